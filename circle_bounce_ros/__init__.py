@@ -1,0 +1,1 @@
+"""Circles that bounce, exactly, and say so on ROS 2 topics."""

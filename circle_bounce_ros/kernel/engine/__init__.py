@@ -1,0 +1,7 @@
+"""
+The event-driven engine: from contact to contact, each found in closed form.
+
+`records` says what is kept of each body, `build` makes a world from a scene, `grid` tells who is near,
+`plan` finds what a circle does next, `tournament` which plan is the earliest, `bounce` carries a contact
+out and `loop` runs from event to event.
+"""
