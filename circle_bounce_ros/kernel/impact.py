@@ -151,7 +151,8 @@ def wall_frame(sx: float, sy: float, ex: float, ey: float) -> tuple[float, float
         When the two ends are the same point.
 
     """
-    length = math.hypot(ex - sx, ey - sy)
+    dx, dy = ex - sx, ey - sy
+    length = math.sqrt(dx * dx + dy * dy)  # not hypot: its last digit differs between Pythons
     if length == 0.0:
         raise ValueError(f'end: must differ from start, got {(ex, ey)} for both')
-    return (sy - ey) / length, (ex - sx) / length, length
+    return -dy / length, dx / length, length

@@ -73,7 +73,6 @@ class Simulation:
 
     def _start(self, record_contacts: bool) -> None:
         self._world = build(self._scene, record_contacts)
-        self._epoch = 0.0  # what the world's clock has been set back by, so far
         self._time = 0.0
 
     def reset(self) -> None:
@@ -113,7 +112,7 @@ class Simulation:
         budget = math.inf if at_most is None else at_most
         while True:
             before = self._world.events
-            why = run(self._world, time - self._epoch, budget)
+            why = run(self._world, time - self._world.epoch, budget)
             budget -= self._world.events - before
             if why == DONE:
                 self._time = time
@@ -124,10 +123,10 @@ class Simulation:
             if why == ENDLESS:
                 self._stop_at_last_event()
                 raise EndlessContactsError(self._describe_crowd())
-            self._epoch += set_clock_back(self._world)
+            set_clock_back(self._world)
 
     def _stop_at_last_event(self) -> None:
-        self._time = max(self._time, self._epoch + self._world.time)
+        self._time = max(self._time, self._world.epoch + self._world.time)
 
     def _describe_crowd(self) -> str:
         circle = self._world.moving[self._world.tree_who[1]]
@@ -164,7 +163,7 @@ class Simulation:
     @property
     def positions(self) -> Floats:
         """The centres of the moving circles at `.time`, (n, 2), m."""
-        now = self._time - self._epoch
+        now = self._time - self._world.epoch
         return np.array([place_at(circle, now) for circle in self._world.moving], np.float64)
 
     @property

@@ -75,4 +75,4 @@ def _note(
         impulse = push * math.sqrt(nx * nx + ny * ny)
         nx, ny = unit_xy(nx, ny)
         x, y = a.x + a.radius * nx, a.y + a.radius * ny
-        world.log.append((a.time, a.id, b, kind, x, y, nx, ny, impulse))
+        world.log.append((world.epoch + a.time, a.id, b, kind, x, y, nx, ny, impulse))

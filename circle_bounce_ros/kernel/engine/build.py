@@ -69,7 +69,7 @@ def build(scene: Scene, keep_log: bool) -> World:
         _make_grid(moving, locked),
         scene.moving_circles_collide,
         keep_log,
-        span=2.0 ** math.floor(math.log2(RADII_PER_SPAN / travel)) if travel > 0.0 else 1.0,
+        span=_power_of_two(RADII_PER_SPAN / travel) if travel > 0.0 else 1.0,
         crowd_span=CROWD_RADII / travel if travel > 0.0 else 1.0,
         patience=PATIENCE + PATIENCE_PER_CIRCLE * len(moving),
     )
@@ -83,10 +83,16 @@ def build(scene: Scene, keep_log: bool) -> World:
 def _typical_speed(moving: list[Moving]) -> float:
     """Return a speed, m/s, that is seldom exceeded: the initial ones, four times the thermal one."""
     squares = [circle.vx * circle.vx + circle.vy * circle.vy for circle in moving]
-    energy = sum(circle.mass * sq for circle, sq in zip(moving, squares, strict=True)) / 2.0
+    # fsum, not sum: that one rounds differently since Python 3.12.
+    energy = math.fsum(circle.mass * sq for circle, sq in zip(moving, squares, strict=True)) / 2.0
     lightest = min(circle.mass for circle in moving)
     thermal = math.sqrt(2.0 * energy / (len(moving) * lightest))
     return max(math.sqrt(max(squares)), 4.0 * thermal)
+
+
+def _power_of_two(value: float) -> float:
+    """Return the largest power of two that is not above a value."""
+    return math.ldexp(0.5, math.frexp(value)[1])
 
 
 def _make_grid(moving: list[Moving], locked: list[Locked]) -> Grid:

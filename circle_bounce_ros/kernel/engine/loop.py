@@ -20,7 +20,7 @@ def run(world: World, until: float, at_most: float) -> int:
     Returns
     -------
     int
-        DONE; BUDGET_SPENT; CLOCK_FULL: set the clock back and call again; ENDLESS: contacts without
+        DONE; BUDGET_SPENT; CLOCK_FULL: `set_clock_back` and call again; ENDLESS: contacts without
         end at one instant, and nothing of the next one has been done.
 
     """
@@ -64,20 +64,16 @@ def _is_endless(world: World, now: float) -> bool:
     return world.crowd > world.patience
 
 
-def set_clock_back(world: World) -> float:
+def set_clock_back(world: World) -> None:
     """
     Set all clocks back by whole spans, so that digits do not wear out in long runs.
 
     It is done when a contact is due beyond the span: at instants that the scene fixes, wherever the
-    caller stops. All circles move to the new zero and plan afresh.
-
-    Returns
-    -------
-    float, s
-        By how much: exact, as the span is a power of two.
-
+    caller stops. All circles move to the new zero and plan afresh. The span is a power of two, so
+    the epoch stays exact.
     """
     back = math.floor(world.tree_time[1] / world.span) * world.span
+    world.epoch += back
     for circle in world.moving:
         move_to(circle, back)
         circle.time = 0.0
@@ -86,4 +82,3 @@ def set_clock_back(world: World) -> float:
     # A cell that was entered between the new zero and now stays: nothing changes course in between.
     for i in range(len(world.moving)):
         plan(world, i, 0.0, EVERYWHERE)
-    return back

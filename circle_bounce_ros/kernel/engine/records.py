@@ -123,8 +123,8 @@ class World:
     """Everything that the engine works on."""
 
     __slots__ = (
-        'away', 'collide', 'contacts', 'crowd', 'crowd_ends', 'crowd_span', 'events', 'flats', 'grid',
-        'keep_log', 'leaf', 'locked', 'log', 'moving', 'patience', 'span', 'time', 'tree_time',
+        'away', 'collide', 'contacts', 'crowd', 'crowd_ends', 'crowd_span', 'epoch', 'events', 'flats',
+        'grid', 'keep_log', 'leaf', 'locked', 'log', 'moving', 'patience', 'span', 'time', 'tree_time',
         'tree_who',
     )  # fmt: skip
 
@@ -146,8 +146,10 @@ class World:
         self.grid = grid
         self.collide = collide
         self.away: list[int] = []  # moving circles that are in no cell
+        # All times in here count from the epoch: clocks are set back before they grow beyond the span.
+        self.epoch = 0.0
+        self.span = span
         self.time = 0.0  # of the last event
-        self.span = span  # the clock is set back before it grows beyond this
         self.events = 0
         self.contacts = 0
         self.keep_log = keep_log

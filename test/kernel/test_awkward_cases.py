@@ -1,0 +1,268 @@
+"""Decided rules for the cases in which geometry alone leaves a choice."""
+
+import math
+
+import numpy as np
+import pytest
+from random_scenes import box
+
+from circle_bounce_ros.kernel import (
+    Circle,
+    ContactKind,
+    EndlessContactsError,
+    Scene,
+    Simulation,
+    Wall,
+    kinetic_energy,
+)
+
+
+def contacts_until(simulation, time):
+    simulation.record_contacts = True
+    simulation.advance_to(time)
+    return simulation.drain_contacts()
+
+
+def locked(x, y, radius=0.5):
+    return Circle((x, y), radius=radius, locked=True)
+
+
+def test_touching_and_closing_in_is_a_contact_now():
+    simulation = Simulation(Scene([Circle((0.0, 0.0), (1.0, 0.0), radius=0.5), locked(1.0, 0.0)]))
+    contacts = contacts_until(simulation, 0.0)
+    assert contacts['time'].tolist() == [0.0]
+    assert simulation.velocities.tolist() == [[-1.0, 0.0]]
+
+
+@pytest.mark.parametrize('velocity', [(-1.0, 0.0), (0.0, 1.0), (0.0, 0.0)])
+def test_touching_and_parting_sliding_or_resting_is_none(velocity):
+    simulation = Simulation(Scene([Circle((0.0, 0.0), velocity, radius=0.5), locked(1.0, 0.0)]))
+    assert len(contacts_until(simulation, 10.0)) == 0
+    assert simulation.velocities.tolist() == [list(velocity)]
+
+
+def test_touching_circles_of_equal_velocity_travel_together():
+    pair = [Circle((x, 0.0), (0.3, 0.1), radius=0.5) for x in (0.0, 1.0)]
+    simulation = Simulation(Scene(pair))
+    assert len(contacts_until(simulation, 100.0)) == 0
+
+
+def test_an_exact_graze_changes_nothing():
+    grazing = Circle((-5.0, 1.0), (1.0, 0.0), radius=0.5)
+    simulation = Simulation(Scene([grazing, locked(0.0, 0.0)]))
+    assert len(contacts_until(simulation, 10.0)) == 0
+
+
+def test_a_hair_inside_a_graze_is_a_contact():
+    inside = Circle((-5.0, 1.0 - 2.0**-40), (1.0, 0.0), radius=0.5)
+    simulation = Simulation(Scene([inside, locked(0.0, 0.0)]))
+    assert len(contacts_until(simulation, 10.0)) == 1
+    # Turned by twice the angle between path and tangent: sqrt(2 2^-40) each.
+    angle = math.atan2(simulation.velocities[0, 1], simulation.velocities[0, 0])
+    assert math.isclose(angle, 2 * math.sqrt(2 * 2.0**-40), rel_tol=1e-3)
+
+
+def test_in_a_corner_of_two_walls_the_velocity_is_reversed():
+    """Both walls at one instant, one after the other; the corner point itself is out of reach."""
+    simulation = Simulation(Scene([Circle((2.0, 2.0), (-1.0, -1.0), radius=0.5)], box(0, 0, 4, 4)))
+    contacts = contacts_until(simulation, 2.0)
+    assert contacts['time'].tolist() == [1.5, 1.5]
+    assert set(contacts['b'].tolist()) == {0, 3}
+    assert simulation.velocities.tolist() == [[1.0, 1.0]]
+
+
+def test_in_a_tilted_corner_too():
+    """A right angle turned by 0.3: the reflections about two normals at right angles reverse."""
+    turn = 0.3
+    c, s = math.cos(turn), math.sin(turn)
+    walls = [Wall((0.0, 0.0), (9 * c, 9 * s)), Wall((0.0, 0.0), (-9 * s, 9 * c))]
+    x, y = 4 * (c - s), 4 * (s + c)
+    simulation = Simulation(Scene([Circle((x, y), (-x, -y), radius=0.5)], walls))
+    assert len(contacts_until(simulation, 2.0)) == 2
+    # Two reflections, each exact to an ulp or two of the speed 5.7.
+    assert np.abs(simulation.velocities - [(x, y)]).max() < 1e-14
+
+
+def test_a_wall_end_is_a_point():
+    """Head-on at the end of a wall seen edge-on; at 45 degrees it turns by a right angle."""
+    wall = Wall((0.0, 0.0), (5.0, 0.0))
+    head_on = Simulation(Scene([Circle((-3.0, 0.0), (1.0, 0.0), radius=0.5)], [wall]))
+    contacts = contacts_until(head_on, 4.0)
+    assert contacts['kind'].tolist() == [ContactKind.WALL_END]
+    assert contacts['time'].tolist() == [2.5]
+    assert head_on.velocities.tolist() == [[-1.0, 0.0]]
+    height = 0.5 * math.sqrt(0.5)
+    aside = Simulation(Scene([Circle((-3.0, height), (1.0, 0.0), radius=0.5)], [wall]))
+    aside.advance_to(4.0)
+    assert np.abs(aside.velocities - [(0.0, 1.0)]).max() < 1e-14
+
+
+def test_an_end_shared_by_two_walls_is_one_point_of_the_lower_number():
+    walls = [Wall((0.0, 0.0), (1.0, 3.0)), Wall((1.0, -3.0), (0.0, 0.0))]
+    simulation = Simulation(Scene([Circle((-3.0, 0.0), (1.0, 0.0), radius=0.5)], walls))
+    contacts = contacts_until(simulation, 10.0)
+    assert [(c['kind'].item(), c['b'].item()) for c in contacts] == [(ContactKind.WALL_END, 0)]
+
+
+@pytest.mark.parametrize('side', [1.0, -1.0])
+def test_a_wall_has_two_sides(side):
+    wall = Wall((-3.0, -3.0), (3.0, 3.0))
+    circle = Circle((-2.0 * side, 2.0 * side), (side, -side), radius=math.sqrt(0.5))
+    simulation = Simulation(Scene([circle], [wall]))
+    contacts = contacts_until(simulation, 3.0)
+    assert np.allclose(contacts['time'], 1.5, rtol=1e-15)
+    assert np.abs(simulation.velocities - [(-side, side)]).max() < 1e-15
+    # The normal points from the circle to the wall.
+    assert np.allclose([contacts['nx'][0], contacts['ny'][0]], np.array([side, -side]) / math.sqrt(2))
+
+
+def test_collinear_walls_are_passed_as_one():
+    """A circle that rolls along the seam of two walls, exactly touching them, is not stopped."""
+    walls = [Wall((-5.0, 0.0), (0.0, 0.0)), Wall((0.0, 0.0), (5.0, 0.0))]
+    simulation = Simulation(Scene([Circle((-4.0, 0.5), (1.0, 0.0), radius=0.5)], walls))
+    assert len(contacts_until(simulation, 20.0)) == 0
+
+
+def test_newtons_cradle_passes_the_velocity_on_at_one_instant():
+    row = [Circle((float(k), 0.0), radius=0.5) for k in range(5)]
+    striker = Circle((-3.0, 0.0), (2.0, 0.0), radius=0.5)
+    simulation = Simulation(Scene([striker, *row]))
+    contacts = contacts_until(simulation, 3.0)
+    assert contacts['time'].tolist() == [1.0] * 5
+    assert simulation.velocities[:, 0].tolist() == [0.0, 0.0, 0.0, 0.0, 0.0, 2.0]
+
+
+def test_simultaneous_contacts_are_reproducible_and_keep_energy():
+    """One circle between two others at one instant: an order is fixed, the result is elastic."""
+    trio = [
+        Circle((0.0, 3.0), (0.0, -1.0), radius=0.5),
+        Circle((-0.5, 0.0), radius=0.5),
+        Circle((0.5, 0.0), radius=0.5),
+    ]
+    runs = [Simulation(Scene(trio)) for _ in range(2)]
+    for run in runs:
+        run.advance_to(10.0)
+    assert runs[0].velocities.tobytes() == runs[1].velocities.tobytes()
+    assert math.isclose(kinetic_energy(runs[0]), 0.5, rel_tol=1e-14)
+    assert runs[0].contact_count >= 2
+
+
+def test_zero_velocity_stays():
+    simulation = Simulation(Scene([Circle((0.0, 0.0), radius=0.5), locked(3.0, 0.0)], box(-1, -1, 5, 1)))
+    simulation.advance_to(1e6)
+    assert simulation.positions.tolist() == [[0.0, 0.0]]
+    assert simulation.contact_count == 0
+
+
+def test_a_single_circle_goes_straight_for_ever():
+    simulation = Simulation(Scene([Circle((1.0, 2.0), (0.25, -0.5), radius=0.5)]))
+    for time in (1.0, 1e6, 1e15):
+        simulation.advance_to(time)
+        assert simulation.positions.tolist() == [[1.0 + 0.25 * time, 2.0 - 0.5 * time]]
+
+
+def test_circles_that_left_an_open_scene_still_meet():
+    """A slow one is caught up by a fast one, a million metres away from everything."""
+    slow = Circle((1.0, 0.0), (1.0, 0.0), radius=0.5)
+    fast = Circle((-1e6, 0.0), (2.0, 0.0), radius=0.5)
+    simulation = Simulation(Scene([slow, fast, locked(0.0, 5.0), locked(-1e6, 9.0)]))
+    contacts = contacts_until(simulation, 3e6)
+    # The gap of a million metres (less the two radii) closes at 1 m/s.
+    assert contacts['time'].tolist() == [1e6]
+    assert simulation.velocities.tolist() == [[2.0, 0.0], [1.0, 0.0]]
+
+
+def test_a_circle_sent_back_from_outside_hits_what_is_locked():
+    """Two circles meet far outside; one comes home and bounces off the locked circle there."""
+    post = locked(0.0, 0.0)
+    leaver = Circle((2.0, 0.0), (1.0, 0.0), radius=0.5)
+    slow, heavy = -0.5, 1e9
+    returner = Circle((301.0, 0.0), (slow, 0.0), radius=0.5, mass=heavy)
+    simulation = Simulation(Scene([post, leaver, returner]))
+    simulation.advance_to(150.0)
+    contacts = contacts_until(simulation, 340.0)
+    # They meet after (301 - 2 - 1) / 1.5 s; the light one comes back with 1 + 2 0.5 m/s.
+    meeting = 298.0 / 1.5
+    assert math.isclose(contacts['time'][0], meeting, rel_tol=1e-12)
+    home = meeting + (2.0 + meeting - 1.0) / 2.0
+    assert math.isclose(contacts['time'][1], home, rel_tol=1e-6)
+    assert contacts['kind'].tolist()[:2] == [ContactKind.CIRCLE, ContactKind.LOCKED]
+
+
+def test_contacts_without_end_are_an_error_and_never_a_hang():
+    """A slot that fits exactly, the circle pushed across it."""
+    slot = [Wall((-5.0, 0.0), (5.0, 0.0)), Wall((-5.0, 1.0), (5.0, 1.0))]
+    scene = Scene([Circle((0.0, 0.5), (1.0, 1.0), radius=0.5, name='stuck')], slot)
+    simulation = Simulation(scene)
+    with pytest.raises(EndlessContactsError) as caught:
+        simulation.advance_to(1.0)
+    assert str(caught.value).startswith(
+        'circles[0] (stuck): contacts without end at 0 s, more than 1100 of them within '
+    )
+    assert simulation.time == 0.0
+    assert simulation.positions.tolist() == [[0.0, 0.5]]
+    simulation.reset()
+    assert simulation.velocities.tolist() == [[1.0, 1.0]]
+
+
+def test_contacts_without_end_survive_calls_in_slices():
+    slot = [Wall((-5.0, 0.0), (5.0, 0.0)), Wall((-5.0, 1.0), (5.0, 1.0))]
+    simulation = Simulation(Scene([Circle((0.0, 0.5), (0.0, 1.0), radius=0.5)], slot))
+    with pytest.raises(EndlessContactsError):
+        for _ in range(2000):
+            simulation.advance_to(1.0, at_most=10)
+
+
+@pytest.mark.parametrize('time', [math.nan, math.inf, -math.inf])
+def test_a_time_that_is_none_is_refused(time):
+    simulation = Simulation(Scene([Circle((0.0, 0.0), radius=0.5)]))
+    with pytest.raises(ValueError, match=f'^time: must be finite, got {time}$'):
+        simulation.advance_to(time)
+
+
+def test_time_does_not_run_backwards():
+    simulation = Simulation(Scene([Circle((0.0, 0.0), (1.0, 0.0), radius=0.5)]))
+    simulation.advance_to(2.0)
+    with pytest.raises(ValueError, match=r'^time: must not be before 2\.0 s, got 1\.5$'):
+        simulation.advance_to(1.5)
+    simulation.advance_to(2.0)
+    assert simulation.positions.tolist() == [[2.0, 0.0]]
+
+
+def test_moving_circles_pass_through_each_other_where_the_scene_says_so():
+    pair = [Circle((0.0, 0.0), (1.0, 0.0), radius=0.5), Circle((4.0, 0.0), (-1.0, 0.0), radius=0.5)]
+    simulation = Simulation(Scene(pair, moving_circles_collide=False))
+    simulation.advance_to(10.0)
+    assert simulation.positions.tolist() == [[10.0, 0.0], [-6.0, 0.0]]
+
+
+def test_ids_are_indices_in_the_scene_and_arrays_are_in_scene_order():
+    circles = [
+        locked(-5.0, 0.0),
+        Circle((0.0, 0.0), (1.0, 0.0), radius=0.5, mass=2.0),
+        locked(5.0, 5.0),
+        Circle((3.0, 0.0), radius=0.25, mass=3.0),
+    ]
+    simulation = Simulation(Scene(circles), record_contacts=True)
+    assert simulation.ids.tolist() == [1, 3]
+    assert simulation.radii.tolist() == [0.5, 0.25]
+    assert simulation.masses.tolist() == [2.0, 3.0]
+    simulation.advance_to(3.0)
+    contact = simulation.drain_contacts()[0]
+    assert (contact['a'], contact['b'], contact['kind']) == (1, 3, ContactKind.CIRCLE)
+    # From a to b, at b's left edge; the impulse of 2 * 2 * 3 / 5 * 1 N s.
+    assert [contact[k].item() for k in ('time', 'x', 'y', 'nx', 'ny')] == [2.25, 2.75, 0.0, 1.0, 0.0]
+    assert math.isclose(contact['impulse'], 2.4, rel_tol=1e-15)
+
+
+def test_contacts_are_logged_only_while_asked_for():
+    scene = Scene([Circle((0.0, 0.0), (1.0, 0.0), radius=0.5)], box(-1, -1, 1, 1))
+    simulation = Simulation(scene)
+    simulation.advance_to(3.0)
+    assert len(simulation.drain_contacts()) == 0
+    assert simulation.contact_count == 3
+    simulation.record_contacts = True
+    simulation.advance_to(5.0)
+    simulation.record_contacts = False
+    simulation.advance_to(7.0)
+    assert simulation.drain_contacts()['time'].tolist() == [3.5, 4.5]
