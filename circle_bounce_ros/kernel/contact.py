@@ -1,8 +1,9 @@
 """
 Have two circles touched, where, and along which normal (lesson eq. 1.1-1.5).
 
-Functions ending in `_xy` work on components, one number or arrays alike, check nothing and are what the
-engine calls. The others are their public faces: they take points as (2,) or (n, 2) and check their input.
+Functions ending in `_xy` work on components, check nothing and are what the engine calls. The others are
+their public faces: they take points as (2,) or (n, 2), and raise ValueError for other shapes, numbers that are
+not finite and negative radii.
 """
 
 from __future__ import annotations
@@ -122,7 +123,8 @@ def contact_normal(center_a: ArrayLike, center_b: ArrayLike) -> NDArray[np.float
     dx, dy = direction(vectors(bx - ax, by - ay), 'center_b - center_a')
     if dx.ndim == 0:
         return vectors(*unit_xy(float(dx), float(dy)))
-    return np.array([unit_xy(*pair) for pair in zip(dx.tolist(), dy.tolist(), strict=True)])
+    units = [unit_xy(*pair) for pair in zip(dx.tolist(), dy.tolist(), strict=True)]
+    return np.array(units).reshape(-1, 2)
 
 
 def contact_point(

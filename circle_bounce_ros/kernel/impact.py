@@ -2,7 +2,8 @@
 When bodies will touch: circle and circle, circle and wall. A wall's end is a circle of radius 0.
 
 Functions ending in `_xy` work on plain numbers, check nothing and are what the engine calls; the others are
-their public faces.
+their public faces, and raise ValueError for wrong shapes, numbers that are not finite and negative lengths.
+Sizes from 1e-60 to 1e60, as a scene has them, keep clear of overflow and underflow.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from circle_bounce_ros.kernel.contact import gap_sq_xy
-from circle_bounce_ros.kernel.points import components, plain, quantity
+from circle_bounce_ros.kernel.points import components, plain, point, quantity
 
 NEVER = math.inf
 
@@ -59,7 +60,7 @@ def time_to_wall_xy(
         speed = -speed
     if speed >= 0.0:
         return NEVER
-    wait = (radius - side) / speed
+    wait = (side - radius) / -speed
     if wait < 0.0:
         wait = 0.0
     along = (x + vx * wait) * ny - (y + vy * wait) * nx
@@ -129,7 +130,7 @@ def time_to_wall(
     """
     x, y = components(position, 'position')
     vx, vy = components(velocity, 'velocity')
-    (sx, sy), (ex, ey) = (map(float, components(p, n)) for p, n in ((start, 'start'), (end, 'end')))
+    (sx, sy), (ex, ey) = point(start, 'start'), point(end, 'end')
     nx, ny, length = wall_frame(sx, sy, ex, ey)
     rows = np.broadcast(x, y, vx, vy, quantity(radius, 'radius'))
     times = []

@@ -38,6 +38,14 @@ def components(value: ArrayLike, name: str) -> tuple[Array, Array]:
     return array[..., 0], array[..., 1]
 
 
+def point(value: ArrayLike, name: str) -> tuple[float, float]:
+    """Return the components of what must be one point, not many."""
+    x, y = components(value, name)
+    if x.ndim != 0:
+        raise ValueError(f'{name}: must have shape (2,), got {np.shape(value)}')
+    return float(x), float(y)
+
+
 def quantity(value: ArrayLike, name: str, *, positive: bool = False) -> Array:
     """
     Return a length or a mass, one () or many (n,), as an array.
@@ -61,11 +69,18 @@ def quantity(value: ArrayLike, name: str, *, positive: bool = False) -> Array:
 
 
 def direction(value: ArrayLike, name: str) -> tuple[Array, Array]:
-    """Return the components of a vector that must not be zero; its length does not matter."""
+    """
+    Return the components of a vector whose length does not matter, as long as it is not zero.
+
+    Scaled by a power of two, which changes no digit of a quotient, so that squares of very long or
+    very short vectors neither overflow nor vanish.
+    """
     x, y = components(value, name)
-    if ((x == 0.0) & (y == 0.0)).any():
+    longer = np.maximum(abs(x), abs(y))
+    if not longer.all():
         raise ValueError(f'{name}: must not be the zero vector')
-    return x, y
+    exponent = np.frexp(longer)[1]
+    return np.ldexp(x, -exponent), np.ldexp(y, -exponent)
 
 
 def vectors(x: ArrayLike, y: ArrayLike) -> Array:
