@@ -1,0 +1,105 @@
+"""What the public functions accept as points, vectors and lengths, and how they refuse the rest."""
+
+import math
+
+import numpy as np
+import pytest
+from lesson_oracles import exactly
+
+from circle_bounce_ros.kernel import points
+
+
+def test_one_vector_gives_two_numbers():
+    x, y = points.components([1, -2], 'velocity')
+    assert (x.shape, y.shape) == ((), ())
+    assert (float(x), float(y)) == (1.0, -2.0)
+
+
+def test_many_vectors_give_two_columns():
+    x, y = points.components(((1, 2), (3, 4), (5, 6)), 'velocity')
+    assert (x.tolist(), y.tolist()) == ([1.0, 3.0, 5.0], [2.0, 4.0, 6.0])
+
+
+def test_components_go_together_again():
+    one, many = np.array((1.0, 2.0)), np.array(((1.0, 2.0), (3.0, 4.0)))
+    for value in (one, many):
+        assert points.vectors(*points.components(value, 'v')).tolist() == value.tolist()
+    assert points.vectors(1.0, np.array((2.0, 3.0))).tolist() == [[1.0, 2.0], [1.0, 3.0]]
+
+
+@pytest.mark.parametrize(
+    ('value', 'problem'),
+    [
+        (1.0, 'must have shape (2,) or (n, 2), got ()'),
+        ([], 'must have shape (2,) or (n, 2), got (0,)'),
+        ([1.0], 'must have shape (2,) or (n, 2), got (1,)'),
+        ([1.0, 2.0, 3.0], 'must have shape (2,) or (n, 2), got (3,)'),
+        ([[1.0, 2.0, 3.0]], 'must have shape (2,) or (n, 2), got (1, 3)'),
+        (np.zeros((2, 3, 2)), 'must have shape (2,) or (n, 2), got (2, 3, 2)'),
+        ([1.0, math.nan], 'must be finite, got [1.0, nan]'),
+        ([-math.inf, 0.0], 'must be finite, got [-inf, 0.0]'),
+        ([[0.0, 1.0], [2.0, math.inf]], 'must be finite, got [[0.0, 1.0], [2.0, inf]]'),
+    ],
+)
+def test_no_vector_is_refused_by_name(value, problem):
+    with pytest.raises(ValueError, match=exactly(f'offset: {problem}')):
+        points.components(value, 'offset')
+
+
+@pytest.mark.parametrize(
+    ('value', 'problem'),
+    [
+        ([[1.0]], 'must be one number or have shape (n,), got (1, 1)'),
+        (math.nan, 'must be finite, got nan'),
+        ([1.0, -math.inf], 'must be finite, got [1.0, -inf]'),
+        (-1e-300, 'must be >= 0, got -1e-300'),
+        ([0.0, -1.0], 'must be >= 0, got [0.0, -1.0]'),
+    ],
+)
+def test_no_length_is_refused_by_name(value, problem):
+    with pytest.raises(ValueError, match=exactly(f'reach: {problem}')):
+        points.quantity(value, 'reach')
+
+
+@pytest.mark.parametrize(
+    ('value', 'got'), [(0.0, '0.0'), (-1.0, '-1.0'), ([2.0, 0.0], '[2.0, 0.0]')]
+)
+def test_what_must_be_positive_is_not_zero(value, got):
+    with pytest.raises(ValueError, match=exactly(f'mass_a: must be > 0, got {got}')):
+        points.quantity(value, 'mass_a', positive=True)
+
+
+def test_a_length_may_be_zero_and_come_in_numbers():
+    assert float(points.quantity(0, 'reach')) == 0.0
+    assert points.quantity([1, 2], 'reach').tolist() == [1.0, 2.0]
+    assert float(points.quantity(5e-324, 'mass', positive=True)) == 5e-324
+
+
+@pytest.mark.parametrize('value', [(0.0, 0.0), (0.0, -0.0), ((1.0, 0.0), (0.0, 0.0))])
+def test_the_zero_vector_has_no_direction(value):
+    with pytest.raises(ValueError, match=exactly('normal: must not be the zero vector')):
+        points.direction(value, 'normal')
+
+
+@pytest.mark.parametrize('size', [5e-324, 1e-310, 1e-200, 0.3, 1.0, 7e5, 1e200, 1.7e308])
+def test_a_direction_is_scaled_so_that_its_square_can_be_taken(size):
+    for value in ((size, 0.0), (0.0, -size), (-size, size)):
+        x, y = points.direction(value, 'normal')
+        assert 0.25 <= x * x + y * y <= 2.0
+        assert math.atan2(y, x) == math.atan2(value[1], value[0])
+
+
+def test_a_direction_keeps_every_digit():
+    rng = np.random.default_rng(5)
+    values = rng.normal(size=(200, 2)) * 10.0 ** rng.uniform(-8, 8, (200, 1))
+    x, y = points.direction(values, 'normal')
+    # Scaled by a power of two: the quotient of the components does not change.
+    assert (y / x == values[:, 1] / values[:, 0]).all()
+    assert (np.sign(x) == np.sign(values[:, 0])).all()
+
+
+def test_one_result_is_a_plain_number_and_many_are_an_array():
+    assert type(points.plain(np.float64(2.0))) is float
+    assert type(points.plain(np.array(True))) is bool
+    many = np.array((1.0, 2.0))
+    assert points.plain(many) is many
