@@ -5,7 +5,7 @@ import random
 
 from circle_bounce_ros.kernel import Circle, Scene, Wall
 
-KINDS = ('box', 'tilted', 'mixed', 'open', 'thin', 'pass_through', 'ends', 'fast')
+KINDS = ('box', 'tilted', 'mixed', 'open', 'thin', 'pass_through', 'ends', 'fast', 'dense')
 
 
 def box(x0, y0, x1, y1):
@@ -82,13 +82,19 @@ def random_scene(kind, seed):
         circles = place(rng, 12, [0.05], 10.0, speed=3000.0)
         circles += place(rng, 8, [1.0], 10.0, locked=True, taken=circles)
         return Scene(circles, tilted)
+    if kind == 'dense':
+        # So many that the cells are as narrow as they may be: as wide as a circle.
+        places = [(2.3 * i - 8.05, 2.3 * j - 8.05) for i in range(8) for j in range(8)]
+        speeds = [(rng.random() - 0.5, rng.random() - 0.5) for _ in places]
+        circles = [Circle(p, v, radius=1.0) for p, v in zip(places, speeds, strict=True)]
+        return Scene(circles, box(-9.2, -9.2, 9.2, 9.2))
     raise AssertionError(kind)
 
 
 def _clear_of(walls, circle):
     """Is the circle further than its radius from points along each wall, closely spaced?"""
     return all(
-        math.dist(circle.position, [a + k / 50 * (b - a) for a, b in zip(w.start, w.end)])
+        math.dist(circle.position, [a + k / 50 * (b - a) for a, b in zip(w.start, w.end, strict=True)])
         > 1.5 * circle.radius
         for w in walls
         for k in range(51)

@@ -1,6 +1,7 @@
 """Decided rules for the cases in which geometry alone leaves a choice."""
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -15,6 +16,10 @@ from circle_bounce_ros.kernel import (
     Wall,
     kinetic_energy,
 )
+from circle_bounce_ros.kernel.engine import tournament
+from circle_bounce_ros.kernel.engine.bounce import bounce
+from circle_bounce_ros.kernel.engine.grid import gather
+from circle_bounce_ros.kernel.engine.records import EVERYWHERE
 
 
 def contacts_until(simulation, time):
@@ -172,21 +177,95 @@ def test_circles_that_left_an_open_scene_still_meet():
     assert simulation.velocities.tolist() == [[2.0, 0.0], [1.0, 0.0]]
 
 
-def test_a_circle_sent_back_from_outside_hits_what_is_locked():
-    """Two circles meet far outside; one comes home and bounces off the locked circle there."""
-    post = locked(0.0, 0.0)
-    leaver = Circle((2.0, 0.0), (1.0, 0.0), radius=0.5)
-    slow, heavy = -0.5, 1e9
-    returner = Circle((301.0, 0.0), (slow, 0.0), radius=0.5, mass=heavy)
-    simulation = Simulation(Scene([post, leaver, returner]))
-    simulation.advance_to(150.0)
-    contacts = contacts_until(simulation, 340.0)
-    # They meet after (301 - 2 - 1) / 1.5 s; the light one comes back with 1 + 2 0.5 m/s.
-    meeting = 298.0 / 1.5
-    assert math.isclose(contacts['time'][0], meeting, rel_tol=1e-12)
-    home = meeting + (2.0 + meeting - 1.0) / 2.0
-    assert math.isclose(contacts['time'][1], home, rel_tol=1e-6)
-    assert contacts['kind'].tolist()[:2] == [ContactKind.CIRCLE, ContactKind.LOCKED]
+def test_a_circle_comes_back_from_far_outside():
+    """
+    A light circle bounces off a locked one, catches up with a heavy one far out, and comes home.
+
+    On the way back it is in no cell of the grid: the locked circle must find it all the same.
+    """
+    speed = 2.01
+    light = Circle((11.0, 0.0), (-speed, 0.0), radius=0.5)
+    heavy = Circle((12.5, 0.0), (1.0, 0.0), radius=0.5, mass=1e12)
+    simulation = Simulation(Scene([light, heavy, locked(0.0, 0.0)]), record_contacts=True)
+    first = 10.0 / speed
+    meeting = (12.5 - 1.0 - 1.0 + speed * first) / (speed - 1.0)
+    place = 12.5 + meeting - 1.0
+    home = meeting + (place - 1.0) / (speed - 2.0)
+    simulation.advance_to(meeting + 1.0)
+    assert simulation._world.moving[0].away
+    simulation.advance_to(home + 1.0)
+    contacts = simulation.drain_contacts()
+    assert contacts['kind'].tolist() == [
+        ContactKind.LOCKED,
+        ContactKind.CIRCLE,
+        ContactKind.LOCKED,
+    ]
+    # The way home is slow: rounding and the finite mass are blown up by speed / (speed - 2).
+    assert np.allclose(contacts['time'], [first, meeting, home], rtol=1e-9)
+
+
+def test_a_circle_still_in_the_grid_meets_one_that_has_just_left_it():
+    """At the edge of the porch one is in a cell and the other in none."""
+
+    def scene(gap, slow):
+        chaser = Circle((3.0, 0.0), (-1.0, 0.0), radius=0.5)
+        return Scene([chaser, Circle((3.0 + gap, 0.0), (slow, 0.0), radius=0.5), locked(0.0, 0.0)])
+
+    gap = 6.0
+    grid = Simulation(scene(gap, 0.1))._world.grid
+    # A circle leaves the grid at the first border between cells beyond the porch and one cell more.
+    edge = grid.x0
+    while edge <= grid.porch[2] + grid.width:
+        edge += grid.width
+    there = edge + 0.3
+    meeting = 2.0 + (there - 1.0 - 1.0) / 1.0
+    slow = (there - 3.0 - gap) / meeting
+    simulation = Simulation(scene(gap, slow), record_contacts=True)
+    simulation.advance_to(meeting - 0.1)
+    assert [circle.away for circle in simulation._world.moving] == [False, True]
+    simulation.advance_to(meeting + 1.0)
+    contacts = simulation.drain_contacts()
+    assert contacts['kind'].tolist() == [ContactKind.LOCKED, ContactKind.CIRCLE]
+    assert math.isclose(contacts['time'][1], meeting, rel_tol=1e-12)
+
+
+def test_who_is_on_the_porch_or_away_looks_at_all_that_are_away():
+    row = [Circle((4.0 * k, 0.0), (float(k > 1), 0.0), radius=0.5) for k in range(3)]
+    simulation = Simulation(Scene([*row, locked(0.0, 5.0)]))
+    world = simulation._world
+    home, porch, away = world.moving
+    while not away.away:
+        simulation.advance_to(simulation.time + 1.0)
+    porch.ix = world.grid.columns
+    assert 2 not in gather(world, home, EVERYWHERE)
+    assert 2 in gather(world, porch, EVERYWHERE)
+    assert gather(world, away, EVERYWHERE) == [0, 1, 2]
+
+
+@pytest.mark.parametrize('kind', [ContactKind.CIRCLE, ContactKind.LOCKED])
+def test_bodies_that_do_not_approach_are_let_go(kind):
+    """Rounding far from the origin can announce a contact of bodies that already part."""
+    parting = Circle((0.0, 0.0), (-1.0, 0.25), radius=0.5)
+    other = locked(1.0, 0.0) if kind == ContactKind.LOCKED else Circle((1.0, 0.0), radius=0.5)
+    simulation = Simulation(Scene([parting, other]), record_contacts=True)
+    circle = simulation._world.moving[0]
+    circle.kind, circle.partner = int(kind), 1 if kind == ContactKind.CIRCLE else 0
+    bounce(simulation._world, 0, 0.0)
+    assert simulation.velocities[0].tolist() == [-1.0, 0.25]
+    assert simulation.contact_count == 0
+    assert len(simulation.drain_contacts()) == 0
+
+
+def test_the_tournament_knows_the_earliest_and_of_equals_the_lowest():
+    rng = random.Random(4)
+    world = Simulation(Scene([Circle((3.0 * k, 0.0), radius=1.0) for k in range(37)]))._world
+    times = [0.0] * 37
+    for _ in range(5000):
+        i = rng.randrange(37)
+        times[i] = rng.choice([1.0, 2.0, 3.0, math.inf, rng.random() * 4])
+        tournament.enter(world, i, times[i])
+        earliest = min(times)
+        assert (world.tree_time[1], world.tree_who[1]) == (earliest, times.index(earliest))
 
 
 def test_contacts_without_end_are_an_error_and_never_a_hang():

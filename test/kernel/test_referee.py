@@ -18,7 +18,7 @@ def contacts_of(scene, until):
 
 
 def duration(kind):
-    return 0.05 if kind == 'fast' else 20.0
+    return {'fast': 0.05, 'dense': 3.0}.get(kind, 20.0)
 
 
 @pytest.mark.parametrize('kind', KINDS)

@@ -105,7 +105,7 @@ class Grid:
         self.columns = columns  # of home
         self.rows = rows
         self.porch = porch
-        # A cell's number keeps its low bits only. Four a side at least: a cell's neighbours differ.
+        # A cell's number keeps its low bits only. Four cells a side at least: nine differ.
         self.bits = max(2, (columns - 1).bit_length())
         lists = 1 << (self.bits + max(2, (rows - 1).bit_length()))
         self.mask = lists - 1
