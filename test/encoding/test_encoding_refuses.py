@@ -112,6 +112,10 @@ def test_a_whole_number_of_numpy_is_as_good_a_stamp(encode):
             lambda: BodiesEncoder('w', [0, 1], [1, -0.1]),
         ),
         (
+            'radii[0]: must be finite and > 0 m, got 0.0',
+            lambda: BodiesEncoder('w', [0, 1], [0, 1]),
+        ),
+        (
             'radii[0]: must be finite and > 0 m, got nan',
             lambda: MovingMarkersEncoder('w', [np.nan, 1]),
         ),
