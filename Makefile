@@ -1,0 +1,86 @@
+# make help says what there is.
+
+PYTHON ?=
+SCENE ?=
+ARGS ?=
+
+# Stays on this machine unless the user's environment says otherwise.
+export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+# A sourced ROS brings pytest plugins that are made for its own pytest.
+export PYTEST_DISABLE_PLUGIN_AUTOLOAD = 1
+
+BIN := .venv/bin
+# Any Python can choose the right one; -S: an active environment of the wheels would start itself twice.
+ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.10; do \
+	command -v $$p && break; done)
+SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
+
+.PHONY: help set-up run listen reset check test test-kernel test-bare-kernel test-rest clean distclean
+.NOTPARALLEL:
+
+help:
+	@echo 'make run        set up what is needed, start the node   (SCENE=gas ARGS="-p rate:=100.0")'
+	@echo 'make listen     in another terminal: what the node publishes'
+	@echo 'make reset      in another terminal: the scene from its first instant'
+	@echo 'make test       everything that CI runs'
+	@echo 'make check      ruff, mypy and import contracts only'
+	@echo 'make set-up     only make the environments that run and test need'
+	@echo 'make clean      remove what tests and builds leave; make distclean: the environments too'
+	@echo 'PYTHON=...      before or after any of these: the Python 3.10-3.13 to use'
+
+set-up: .venv .venvs/kernel .venvs/colcon
+
+.PHONY: .venv .venvs/kernel .venvs/colcon
+.venv .venvs/kernel .venvs/colcon:
+	$(SET_UP) $@
+
+define NOTICE
+The node publishes the scene $(or $(SCENE),lesson):
+  /<circle>/pose and /<circle>/twist of each named circle (in the lesson: /green/pose, /green/twist),
+  /poses, /bodies, /contacts, /time, /markers, /markers/static and /diagnostics.
+Look at it from another terminal:   make listen
+Start the scene again:              make reset
+With ROS 2 sourced:                 ros2 topic echo /green/pose
+                                    ros2 service call /bounce/reset std_srvs/srv/Trigger
+Ctrl-C ends it.
+
+endef
+export NOTICE
+
+run: .venv
+	@printf '%s\n' "$$NOTICE"
+	@exec $(BIN)/bounce_node --ros-args $(if $(SCENE),-p 'scene:=$(SCENE)') $(ARGS)
+
+listen: .venv
+	@exec $(BIN)/python examples/listen.py $(ARGS)
+
+reset: .venv
+	@exec $(BIN)/python examples/control.py reset $(ARGS)
+
+check: .venv
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test: set-up check test-kernel test-bare-kernel test-rest
+	@echo 'make test: PASSED'
+
+# Branch coverage, measured by the kernel's own tests.
+test-kernel: .venv
+	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel
+
+# The same tests where there is nothing but numpy and pytest: no ROS, no YAML, no compiler.
+test-bare-kernel: .venvs/kernel
+	env -u PYTHONPATH .venvs/kernel/bin/python -m pytest test/kernel
+
+test-rest: .venv .venvs/kernel .venvs/colcon
+	$(BIN)/python -m pytest --ignore=test/kernel
+
+clean:
+	rm -rf build install log out .coverage .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv*' -prune -exec rm -rf {} +
+
+distclean: clean
+	rm -rf .venvs *.egg-info
+	if [ -e .venv/circle_bounce_ros.json ]; then rm -rf .venv; fi

@@ -1,0 +1,61 @@
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'circle_bounce_ros'
+
+
+def share(*folders):
+    """Return data_files entries that put the files of these folders where ament looks for them."""
+    return [
+        (
+            f'share/{PACKAGE}/{folder}',
+            [str(file) for file in sorted(Path(folder).iterdir()) if file.is_file()],
+        )
+        for folder in folders
+    ]
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    description='Circles that bounce off circles and walls, computed exactly, and published on ROS 2 topics',
+    license='Apache-2.0',
+    author='circle_bounce_ros developers',
+    author_email='developers@circle-bounce-ros.example.com',
+    maintainer='circle_bounce_ros developers',
+    maintainer_email='developers@circle-bounce-ros.example.com',
+    python_requires='>=3.10,<3.14',
+    packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (f'share/{PACKAGE}', ['package.xml', 'LICENSE']),
+        *share('config', 'config/scenes', 'launch'),
+    ],
+    zip_safe=False,
+    install_requires=['numpy>=1.26', 'PyYAML>=6.0', 'jsonschema>=4.10'],
+    extras_require={
+        # Where no ROS is installed: the same packages from PyPI.
+        'ros': [
+            'ros-jazzy-rclpy~=7.1.6',
+            'ros-jazzy-rmw-fastrtps-cpp~=8.4.3',
+            'ros-jazzy-common-interfaces~=5.3.6',
+        ],
+        'test': ['pytest>=8', 'pytest-cov>=5', 'hypothesis>=6.100'],
+        # Exact, because a new release of any of these finds new faults in the same code.
+        'check': [
+            'ruff==0.17.6',
+            'mypy==2.4.1',
+            'import-linter==2.15',
+            'types-PyYAML',
+            'types-jsonschema',
+        ],
+        'docs': ['matplotlib>=3.8'],
+    },
+    entry_points={
+        'console_scripts': [
+            'bounce_node = circle_bounce_ros.ros.node:main',
+            'bounce_check = circle_bounce_ros.scene_file.check:check_main',
+        ],
+    },
+)
