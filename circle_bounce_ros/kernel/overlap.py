@@ -44,7 +44,7 @@ class Bodies:
             np.array([circle.radius for circle in scene.circles], dtype=float),
             np.array([circle.locked for circle in scene.circles], dtype=bool),
             np.array([wall.start + wall.end for wall in scene.walls], dtype=float).reshape(-1, 4),
-            bool(scene.moving_circles_collide),
+            scene.moving_circles_collide,
         )
 
 

@@ -40,6 +40,10 @@ class SceneError(ValueError):
         self.place = place
         self.problem = problem
 
+    def __reduce__(self) -> tuple[type[SceneError], tuple[str, str]]:
+        """Let the error travel between processes: its arguments are not its text."""
+        return type(self), (self.place, self.problem)
+
     def within(self, outer: str) -> SceneError:
         """Return the same error seen from the thing that holds the place."""
         return SceneError(f'{outer}.{self.place}' if self.place else outer, self.problem)
@@ -78,8 +82,7 @@ class Circle:
         object.__setattr__(self, 'velocity', _point(self.velocity, 'velocity', 'm/s'))
         object.__setattr__(self, 'radius', _positive(self.radius, 'radius', 'm'))
         object.__setattr__(self, 'mass', _positive(self.mass, 'mass', 'kg'))
-        if not isinstance(self.locked, (bool, np.bool_)):
-            raise SceneError('locked', f'must be true or false, got {self.locked!r}')
+        object.__setattr__(self, 'locked', _truth(self.locked, 'locked'))
         if self.locked and self.velocity != (0.0, 0.0):
             raise SceneError('velocity', f'must be (0, 0) for a locked circle, got {self.velocity}')
         if self.name is not None and not is_legal_name(self.name):
@@ -139,9 +142,8 @@ class Scene:
     def __post_init__(self) -> None:
         object.__setattr__(self, 'circles', _all_of(Circle, self.circles, 'circles'))
         object.__setattr__(self, 'walls', _all_of(Wall, self.walls, 'walls'))
-        if not isinstance(self.moving_circles_collide, (bool, np.bool_)):
-            got = repr(self.moving_circles_collide)
-            raise SceneError('moving_circles_collide', f'must be true or false, got {got}')
+        collide = _truth(self.moving_circles_collide, 'moving_circles_collide')
+        object.__setattr__(self, 'moving_circles_collide', collide)
         restart_after = _number(self.restart_after, 'restart_after')
         if not restart_after > 0.0:
             raise SceneError('restart_after', f'must be > 0 s, got {self.restart_after}')
@@ -183,8 +185,14 @@ def is_legal_name(name: Any) -> bool:
     return name.replace('_', 'a').isalnum() and '__' not in name
 
 
+def _truth(value: Any, place: str) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise SceneError(place, f'must be true or false, got {value!r}')
+    return bool(value)
+
+
 def _number(value: Any, place: str) -> float:
-    if isinstance(value, (bool, str)):
+    if isinstance(value, (bool, np.bool_, str, bytes)):
         raise SceneError(place, f'must be a number, got {value!r}')
     try:
         return float(value)
