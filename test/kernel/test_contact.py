@@ -160,7 +160,7 @@ def test_normal_has_length_one_along_the_line_of_centres():  # lesson, the line 
         assert nx * nx + ny * ny == pytest.approx(1.0, abs=4 * ULP)  # two quotients, two squares
         length = math.hypot(dx, dy)
         assert nx * dy - ny * dx == pytest.approx(0.0, abs=4 * ULP * length)
-        assert nx * dx + ny * dy == pytest.approx(length, rel=4 * ULP)
+        assert nx * dx + ny * dy == pytest.approx(length, rel=4 * ULP, abs=0)
         assert (contact.contact_normal(b, a) == (-nx, -ny)).all()
 
 
@@ -179,7 +179,7 @@ def test_two_circles_touch_in_a_single_point():  # lesson, the line of centres
     point = contact.contact_point((1, 2), 2, (4, 6))
     assert point.tolist() == [1.0 + 2.0 * 0.6, 2.0 + 2.0 * 0.8]
     # Seen from either circle it is the same point, to the rounding of one sum.
-    assert contact.contact_point((4, 6), 3, (1, 2)) == pytest.approx(point, rel=2 * ULP)
+    assert contact.contact_point((4, 6), 3, (1, 2)) == pytest.approx(point, rel=2 * ULP, abs=0)
 
 
 def test_contact_point_lies_on_both_circles_and_the_line_of_centres():  # lesson, same
