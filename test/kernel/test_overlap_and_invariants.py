@@ -93,6 +93,11 @@ def test_the_smallest_gap_is_a_negative_depth():
     assert deepest(Bodies.of_scene(scene)) == (-1.0, 0, 1, True)
 
 
+def test_touching_is_an_overlap_of_depth_zero():
+    scene = Scene([Circle((1, 0), radius=1.0), Circle((-1, 0), radius=1.0)])
+    assert deepest(Bodies.of_scene(scene)) == (0.0, 0, 1, False)
+
+
 def test_bodies_of_a_scene_are_its_circles_by_id_and_its_walls():
     circles = [Circle((1, 2), radius=0.5, locked=True), Circle((3, 4), (5, 6), radius=0.25)]
     bodies = Bodies.of_scene(Scene(circles, [Wall((7, 8), (9, 10))], moving_circles_collide=False))

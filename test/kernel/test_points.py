@@ -20,6 +20,24 @@ def test_many_vectors_give_two_columns():
     assert (x.tolist(), y.tolist()) == ([1.0, 3.0, 5.0], [2.0, 4.0, 6.0])
 
 
+def test_one_point_is_two_plain_numbers():
+    assert points.point(np.array((1, -2)), 'start') == (1.0, -2.0)
+    assert [type(number) for number in points.point((1, -2), 'start')] == [float] * 2
+
+
+@pytest.mark.parametrize(
+    ('value', 'problem'),
+    [
+        (((1.0, 2.0),), 'must have shape (2,), got (1, 2)'),
+        (((1, 2), (3, 4)), 'must have shape (2,), got (2, 2)'),
+        ((1, 2, 3), 'must have shape (2,) or (n, 2), got (3,)'),
+    ],
+)
+def test_many_points_are_refused_where_one_is_asked_for(value, problem):
+    with pytest.raises(ValueError, match=exactly(f'start: {problem}')):
+        points.point(value, 'start')
+
+
 def test_components_go_together_again():
     one, many = np.array((1.0, 2.0)), np.array(((1.0, 2.0), (3.0, 4.0)))
     for value in (one, many):

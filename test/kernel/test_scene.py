@@ -121,6 +121,7 @@ def test_the_largest_and_the_smallest_are_accepted():
     circle = Circle((1e60, -1e60), (-1e60, 1e60), radius=1e-60, mass=1e-60)
     assert circle.position == (1e60, -1e60)
     assert Circle((0, 0), radius=1e60, mass=1e60).radius == 1e60
+    assert Wall((0, 0), (0, 1e-60)).end == (0.0, 1e-60)
 
 
 def test_a_locked_circle_may_have_a_velocity_of_minus_zero():
