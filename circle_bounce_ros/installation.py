@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 PACKAGE = 'circle_bounce_ros'
+
+# Set by the ROS packages from PyPI when they have started Python a second time.
+WHEELS_STARTED = '_ROS_WHEELS_BOOTSTRAP_COMPLETE'
+LIBRARY_PATH = 'LD_LIBRARY_PATH'
 
 
 def share_directory() -> Path:
@@ -27,7 +32,9 @@ def share_directory() -> Path:
         if (folder / 'package.xml').is_file() and (folder / 'config').is_dir():
             return folder
     looked = ', '.join(str(folder) for folder in candidates)
-    raise FileNotFoundError(f'{PACKAGE}: no folder with package.xml and config, looked in {looked}')
+    raise FileNotFoundError(
+        f'{PACKAGE}: no folder with package.xml and config, looked in {looked}'
+    )
 
 
 def _share_candidates() -> Iterator[Path]:
@@ -38,3 +45,24 @@ def _share_candidates() -> Iterator[Path]:
     for prefix in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep):
         if prefix:
             yield Path(prefix) / 'share' / PACKAGE
+
+
+def child_environment(**changes: str) -> dict[str, str]:
+    """
+    Return the environment for a child process, with changes, without what the ROS wheels leave behind.
+
+    They put the folders of their libraries into LD_LIBRARY_PATH, start Python a second time, and set a
+    variable so as not to do it again. A child with another Python would load the wrong libraries, a child
+    with ROS wheels of its own would not find them.
+    """
+    environment = dict(os.environ)
+    if environment.pop(WHEELS_STARTED, None):
+        folders = environment.pop(LIBRARY_PATH, '').split(os.pathsep)
+        kept = [folder for folder in folders if folder and not _belongs_to_wheels(Path(folder))]
+        if kept:
+            environment[LIBRARY_PATH] = os.pathsep.join(kept)
+    return environment | changes
+
+
+def _belongs_to_wheels(folder: Path) -> bool:
+    return folder == Path(sys.prefix, 'lib') or folder.match('site-packages/ros_*.libs')

@@ -91,7 +91,7 @@ def check_ros():
     distribution = os.environ.get('ROS_DISTRO', '')
     if distribution not in ('', 'jazzy'):
         raise Refusal(
-            'ROS 2 {} is sourced here, needed is jazzy or a terminal without ROS'.format(
+            'ROS 2 {} is sourced here, but jazzy or a terminal without ROS is needed'.format(
                 distribution
             )
         )
@@ -139,7 +139,7 @@ def choose_python(wanted, ros_sourced):
         if found and not problem:
             return found
         first_problem = first_problem or problem
-    raise Refusal(first_problem or 'needed is Python {}, found none'.format(versions()))
+    raise Refusal(first_problem or 'Python {} is needed, found none'.format(versions()))
 
 
 def probe(name):
@@ -157,7 +157,7 @@ def problem_with(found, ros_sourced):
     """Return why a Python does not fit, None when it does."""
     version = '{}.{}'.format(*found['version'])
     if found['implementation'] != 'cpython' or not OLDEST <= tuple(found['version']) <= NEWEST:
-        return 'needed is Python {}, {} is {} {} (another one: make PYTHON=...)'.format(
+        return 'Python {} is needed, {} is {} {} (another one: make PYTHON=...)'.format(
             versions(), found['executable'], found['implementation'], version
         )
     if ros_sourced and not found['rclpy']:
@@ -187,7 +187,7 @@ def make(environment, key, python, ros_sourced):
     folder = ROOT / environment
     stamp = folder / STAMP
     if folder.exists() and not stamp.exists():
-        raise Refusal('{} was made by somebody else: remove it or move it away'.format(folder))
+        raise Refusal('{} was not made by this script: remove it or move it away'.format(folder))
     print(
         'Setting up {} with Python {}.{}, once ...'.format(environment, *python['version']),
         flush=True,
@@ -202,7 +202,8 @@ def make(environment, key, python, ros_sourced):
         folder.rename(removed)
     begun.rename(folder)
     shutil.rmtree(str(removed), ignore_errors=True)
-    sites = ['--system-site-packages'] if ros_sourced and environment == '.venv' else []
+    # A sourced ROS builds on the system's packages. The kernel's environment must have none of them.
+    sites = ['--system-site-packages'] if ros_sourced and environment != '.venvs/kernel' else []
     run([python['executable'], '-m', 'venv'] + sites + [str(folder)])
     pip = [
         str(folder / 'bin/python'),
