@@ -1,0 +1,252 @@
+"""The node: on each tick it asks the kernel for the state at a scene time and says it on topics."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import rclpy
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.executors import ExternalShutdownException
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from std_srvs.srv import SetBool, Trigger
+
+from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError
+from circle_bounce_ros.ros.diagnostics import Diagnostics, Facts
+from circle_bounce_ros.ros.parameters import ParameterError, Parameters
+from circle_bounce_ros.ros.publishers import Moment, Publishers
+from circle_bounce_ros.ros.runner import Runner
+from circle_bounce_ros.ros.timeline import SECOND, ClockTimeline, Tick, WallTimeline
+
+# However heavy the scene, a service waits about this long for a tick and no longer.
+BUDGET = 0.1  # s
+
+# How long ticks that are due together may take in a row.
+CATCHING_UP = 0.02  # s
+
+DIAGNOSTICS_PERIOD = 1.0  # s
+
+# What rclpy raises for malformed arguments, and when its context has ended.
+RCL_ERRORS = (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError)
+
+
+class BounceNode(Node):
+    """
+    A scene that moves and says so.
+
+    Raises
+    ------
+    ParameterError, SceneError
+        For parameters that it cannot start with.
+
+    """
+
+    def __init__(self) -> None:
+        super().__init__('bounce')
+        # One thread is enough for everything here; the lock is for whoever spins the node with more.
+        self._lock = threading.Lock()
+        self._settings = Parameters(self, self._on_change)
+        self._leads = self._settings['publish_clock']
+        timeline = ClockTimeline if self._leads else WallTimeline
+        self._timeline: ClockTimeline | WallTimeline = timeline(
+            self._settings['rate'],
+            self._settings['time_scale'],
+            self._settings['start_paused'],
+        )
+        self._outputs = Publishers(self, self._settings['frame_id'], self._leads)
+        self._diagnostics = Diagnostics(self)
+        self._show_scene()
+        self.create_service(Trigger, '~/reset', self._reset)
+        self.create_service(SetBool, '~/pause', self._pause)
+        self.create_service(Trigger, '~/step', self._step)
+        # ROS time would stop the timers whenever it stands or jumps back.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        period = self._timeline.timer_period_ns / SECOND
+        self._tick_timer = self.create_timer(period, self._on_timer, clock=steady)
+        self.create_timer(DIAGNOSTICS_PERIOD, self._on_second, clock=steady)
+
+    def _show_scene(self) -> None:
+        scene = self._settings.scene
+        self._runner = Runner(scene)
+        self._outputs.show(scene)
+        self._timeline.set_restart_after(scene.restart_after)
+        self.get_logger().info(f'{describe(scene)} in frame {self._settings["frame_id"]!r}')
+
+    def _on_timer(self) -> None:
+        with self._lock:
+            began = time.monotonic_ns()
+            reading = self._read_clock()
+            while (tick := self._timeline.begin(reading)) is not None:
+                complete = self._show(tick)
+                if not complete or time.monotonic_ns() - began > CATCHING_UP * SECOND:
+                    break
+            progress = self._timeline.take_progress()
+            self._diagnostics.add_tick(began, self._timeline.timer_period_ns, progress)
+            self._report_change()
+
+    def _read_clock(self) -> int:
+        """Return what the clock that drives the scene reads, ns."""
+        if isinstance(self._timeline, ClockTimeline):
+            return time.monotonic_ns()
+        clock = self.get_clock()
+        self._timeline.follow(outside=clock.ros_time_is_active)
+        return clock.now().nanoseconds
+
+    def _show(self, tick: Tick) -> bool:
+        """Publish a tick, if the simulation gets there in time or time need not be made up."""
+        if tick.went_back:
+            self.get_logger().warning('the clock jumped back: the scene starts again')
+        self._runner.record_contacts(self._outputs.contacts_are_wanted)
+        reached_ns = self._runner.advance_to(tick.scene_ns, BUDGET)
+        if not self._timeline.came_to(reached_ns):
+            return False
+        self._outputs.publish(Moment(tick.stamp_ns, reached_ns, self._runner.state))
+        return True
+
+    def _on_second(self) -> None:
+        with self._lock:
+            self._diagnostics.end_second(time.monotonic_ns(), self._runner.contact_count)
+            if self._has_started():
+                self._diagnostics.report(self._now_ns(), self._facts(), self._runner)
+
+    def _report_change(self) -> None:
+        if self._has_started():
+            self._diagnostics.report_change(self._now_ns(), self._facts(), self._runner)
+
+    def _facts(self) -> Facts:
+        scene = self._runner.scene
+        return Facts(
+            paused=self._timeline.paused,
+            scene=scene.name,
+            seed=scene.seed,
+            time_scale=self._settings['time_scale'],
+            waits_for_clock=not self._leads and self._now_ns() == 0,
+        )
+
+    def _now_ns(self) -> int:
+        if isinstance(self._timeline, ClockTimeline):
+            return self._timeline.stamp_ns
+        return self.get_clock().now().nanoseconds
+
+    def _has_started(self) -> bool:
+        """Return whether there is a time to report at: whoever leads says nothing at zero."""
+        return not self._leads or self._now_ns() > 0
+
+    def _on_change(self, names: set[str]) -> None:
+        with self._lock:
+            if names & {'scene', 'seed'}:
+                self._show_scene()
+                self._timeline.restart()
+            if 'rate' in names:
+                self._timeline.set_rate(self._settings['rate'])
+            if 'time_scale' in names:
+                self._timeline.set_time_scale(self._settings['time_scale'])
+            self._set_timer_period()
+            self._report_change()
+
+    def _set_timer_period(self) -> None:
+        period_ns = self._timeline.timer_period_ns
+        if period_ns != self._tick_timer.timer_period_ns:
+            self._tick_timer.timer_period_ns = period_ns
+            self._tick_timer.reset()
+
+    def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        with self._lock:
+            self._timeline.restart()
+        response.success = True
+        response.message = f'{describe(self._runner.scene)}: starts again from its first instant'
+        return response
+
+    def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        with self._lock:
+            self._timeline.paused = request.data
+            self._report_change()
+        response.success = True
+        response.message = 'paused' if request.data else 'running'
+        return response
+
+    def _step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        with self._lock:
+            response.success = self._timeline.paused
+            if self._timeline.paused:
+                self._timeline.step()
+                response.message = f'scene time {self._timeline.scene_ns / SECOND:.9f} s'
+            else:
+                response.message = 'not paused: only a paused scene goes step by step'
+        return response
+
+
+def describe(scene: Scene) -> str:
+    """Return what a scene is called, what its random numbers came from, and how much is in it."""
+    seed = 'no seed' if scene.seed is None else f'seed {scene.seed}'
+    return f'scene {scene.name!r}, {seed}, {len(scene.circles)} circles'
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """
+    Run the node until Ctrl-C or SIGTERM.
+
+    Returns
+    -------
+    int
+        The exit status: 1 for arguments and parameters that it cannot start with, and for contacts
+        without end.
+
+    """
+    on_signals(signal.default_int_handler)
+    try:
+        return run(args)
+    except KeyboardInterrupt:
+        return 0
+    finally:
+        # Python itself would give SIGTERM its deadly meaning back while it ends.
+        on_signals(signal.SIG_IGN)
+
+
+def run(args: Sequence[str] | None) -> int:
+    try:
+        rclpy.init(args=args)
+    except RCL_ERRORS as error:
+        return fail(error)
+    node = None
+    try:
+        node = BounceNode()
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (ParameterError, SceneError, EndlessContactsError) as error:
+        return fail(error)
+    except RCL_ERRORS:
+        # A signal may end the context in the middle of a callback, which then cannot publish.
+        if rclpy.ok():
+            raise
+    finally:
+        # A shell and a launcher often both pass a Ctrl-C on: the second must not break the clean end.
+        # Not ignored yet, because rclpy, as it shuts down, puts back the handler that it found.
+        on_signals(lambda *_: None)
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+def on_signals(handler: Any) -> None:
+    """Treat Ctrl-C and SIGTERM alike."""
+    signal.signal(signal.SIGINT, handler)
+    signal.signal(signal.SIGTERM, handler)
+
+
+def fail(error: Exception) -> int:
+    """Log why the node ends, in one line, and return the exit status."""
+    rclpy.logging.get_logger('bounce').fatal(' '.join(str(error).split()))
+    return 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,137 @@
+"""The simulation on its way from instant to instant of scene time, in slices that block nobody for long."""
+
+from __future__ import annotations
+
+import math
+import time
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from circle_bounce_ros.kernel import Scene, Simulation, kinetic_energy
+
+# Steps of work between two looks at the clock: about 10 ms of the plain engine.
+SLICE = 256
+
+SECONDS_PER_NS = 1e-9
+
+
+def kernel_time(scene_ns: int) -> float:
+    """Return the time that the kernel is asked for at a scene time, s."""
+    return scene_ns * SECONDS_PER_NS
+
+
+def first_ns_after(seconds: float) -> int:
+    """Return the first whole nanosecond whose `kernel_time` is not before this time."""
+    scene_ns = math.ceil(seconds / SECONDS_PER_NS)
+    while kernel_time(scene_ns) < seconds:
+        scene_ns += 1
+    while scene_ns > 0 and kernel_time(scene_ns - 1) >= seconds:
+        scene_ns -= 1
+    return scene_ns
+
+
+class State:
+    """
+    The moving circles at one instant, read from the kernel when somebody asks and only once.
+
+    Attributes
+    ----------
+    positions : (n, 2) float, m
+    velocities : (n, 2) float, m/s
+
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+
+    @cached_property
+    def positions(self) -> NDArray[np.float64]:
+        return self._simulation.positions
+
+    @cached_property
+    def velocities(self) -> NDArray[np.float64]:
+        return self._simulation.velocities
+
+    @cached_property
+    def contacts(self) -> NDArray[np.void]:
+        """The contacts logged since the last time they were read, (k,), dtype `kernel.CONTACT`."""
+        return self._simulation.drain_contacts()
+
+
+class Runner:
+    """
+    A scene in motion.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._simulation = Simulation(scene)
+        self._energy = kinetic_energy(self._simulation)
+        self._contacts_before = 0
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that it started from."""
+        return self._simulation.scene
+
+    @property
+    def state(self) -> State:
+        """The state at the instant that was reached, to be used before the next one."""
+        return State(self._simulation)
+
+    @property
+    def contact_count(self) -> int:
+        """How many contacts there have been, restarts included."""
+        return self._contacts_before + self._simulation.contact_count
+
+    @property
+    def energy_error(self) -> float:
+        """How far the kinetic energy is from that of the first instant, relative to it."""
+        return kinetic_energy(self._simulation) / self._energy - 1.0 if self._energy else 0.0
+
+    def record_contacts(self, wanted: bool) -> None:
+        """Log contacts from here on, or forget them."""
+        if wanted != self._simulation.record_contacts:
+            self._simulation.record_contacts = wanted
+            self._simulation.drain_contacts()
+
+    def advance_to(self, scene_ns: int, seconds: float) -> int:
+        """
+        Go to an instant of scene time; for an earlier one the scene starts again.
+
+        Parameters
+        ----------
+        scene_ns : int, ns
+        seconds : float, s
+            How long it may take, give or take one slice.
+
+        Returns
+        -------
+        int, ns
+            The instant reached: `scene_ns`, or less when time was up. The state is that of this very
+            instant.
+
+        Raises
+        ------
+        EndlessContactsError
+            For contacts without end at one instant.
+
+        """
+        simulation = self._simulation
+        target = kernel_time(scene_ns)
+        if target < simulation.time:
+            self._contacts_before += simulation.contact_count
+            simulation.reset()
+        deadline = time.monotonic() + seconds
+        while not simulation.advance_to(target, at_most=SLICE):
+            if time.monotonic() >= deadline:
+                scene_ns = min(first_ns_after(simulation.time), scene_ns)
+                simulation.advance_to(kernel_time(scene_ns))
+                break
+        return scene_ns
