@@ -1,0 +1,95 @@
+"""
+Plain data against config/scene.schema.json; the first fault in the file becomes one sentence.
+
+The schema says in `errorMessage` (a word that editors know) what no keyword says well, and in `x-unit` the
+unit of a number.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import Any
+
+from jsonschema import (  # type: ignore[import-untyped]  # it has no types
+    Draft202012Validator,
+    ValidationError,
+)
+
+from circle_bounce_ros.installation import share_directory
+from circle_bounce_ros.kernel import SceneError
+from circle_bounce_ros.scene_file.wording import inside, shown
+
+_TYPES = {
+    'array': 'a list',
+    'boolean': 'true or false',
+    'integer': 'a whole number',
+    'number': 'a number',
+    'object': 'a mapping',
+    'string': 'text',
+}
+
+_RANGES = {'exclusiveMinimum': '>', 'minimum': '>=', 'exclusiveMaximum': '<', 'maximum': '<='}
+
+# Of several faults in one place the first of these is told: a value of the wrong type breaks other rules too.
+_ORDER = ('type', 'additionalProperties', 'required', 'oneOf', 'anyOf')
+
+
+def check(data: Any) -> None:
+    """
+    Check plain data against the schema of scene files.
+
+    Raises
+    ------
+    SceneError
+        The first fault in the order of the file.
+
+    """
+    errors = list(_validator().iter_errors(data))
+    if errors:
+        error = min(errors, key=lambda error: _rank(error, data))
+        place, problem = _sentence(error)
+        raise SceneError(place, problem)
+
+
+@lru_cache(maxsize=1)
+def _validator() -> Draft202012Validator:
+    path = share_directory() / 'config' / 'scene.schema.json'
+    return Draft202012Validator(json.loads(path.read_text(encoding='utf-8')))
+
+
+def _rank(error: ValidationError, data: Any) -> tuple[list[int], int, str]:
+    """Return what to sort by: where in the file, then which rule."""
+    where = []
+    for key in error.absolute_path:
+        where.append(list(data).index(key) if isinstance(data, dict) else int(key))
+        data = data[key]
+    rule = _ORDER.index(error.validator) if error.validator in _ORDER else len(_ORDER)
+    return where, rule, error.message
+
+
+def _sentence(error: ValidationError) -> tuple[str, str]:
+    place = _place(error.absolute_path)
+    limit, value, schema = error.validator_value, error.instance, error.schema
+    got = f'got {shown(value)}'
+    if error.validator == 'required':
+        missing = next(key for key in limit if key not in value)
+        return inside(place, missing), 'must be given, got nothing'
+    if error.validator == 'additionalProperties':
+        unknown = next(key for key in value if key not in schema['properties'])
+        known = ', '.join(schema['properties'])
+        return inside(place, unknown), f'must be one of the keys {known}, got an unknown key'
+    if error.validator == 'type' and (limit == 'object' or 'errorMessage' not in schema):
+        return place, f'must be {_TYPES[limit]}, {got}'
+    if error.validator in _RANGES:
+        unit = f' {schema["x-unit"]}' if 'x-unit' in schema else ''
+        return place, f'must be {_RANGES[error.validator]} {limit}{unit}, {got}'
+    return place, f'{schema["errorMessage"]}, {got}'
+
+
+def _place(path: Iterable[str | int]) -> str:
+    place = ''
+    for key in path:
+        place = inside(place, key)
+    return place
