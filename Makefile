@@ -25,8 +25,9 @@ help:
 	@echo 'make test       everything that CI runs'
 	@echo 'make check      ruff, mypy and import contracts only'
 	@echo 'make set-up     only make the environments that run and test need'
-	@echo 'make clean      remove what tests and builds leave; make distclean: the environments too'
-	@echo 'PYTHON=...      before or after any of these: the Python 3.10-3.13 to use'
+	@echo 'make clean      remove what tests and builds leave'
+	@echo 'make distclean  remove the environments too'
+	@echo 'Each takes PYTHON=..., the Python 3.10-3.13 to use, for example make PYTHON=python3.12 run'
 
 set-up: .venv .venvs/kernel .venvs/colcon
 

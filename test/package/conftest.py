@@ -10,7 +10,7 @@ from installs import PACKAGE, ROOT, run
 
 from circle_bounce_ros.installation import child_environment
 
-LISTENER = Path(__file__).with_name('first_pose.py')
+LISTENER = Path(__file__).with_name('first_message.py')
 BUILDER = ROOT / '.venvs/colcon'
 LEFTOVERS = ['.*', '__pycache__', '*.egg-info', 'build', 'install', 'log', 'out']
 
@@ -47,12 +47,12 @@ def colcon_install(request, builder, source_tree, tmp_path_factory):
 
 @pytest.fixture
 def listener(domain):
-    """Return a process that listens to a topic of poses: it is there, and it has heard nothing yet."""
+    """Return a function that starts listening to a topic, of poses or of times, in another process."""
     processes = []
 
-    def listen(topic):
+    def listen(kind, topic):
         process = subprocess.Popen(
-            [sys.executable, str(LISTENER), topic],
+            [sys.executable, str(LISTENER), kind, topic],
             env=child_environment(),
             stdout=subprocess.PIPE,
             text=True,

@@ -27,8 +27,8 @@ def run(*command, cwd=None, status=0, **environment):
     return done.stdout
 
 
-def first_pose(listener):
-    """Return x and y of the first pose that a listener hears."""
+def first_message(listener):
+    """Return the two numbers of the first message that a listener hears."""
     output, _ = listener.communicate(timeout=PATIENCE)
     assert listener.returncode == 0
     return json.loads(output)

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from installs import PACKAGE, PATIENCE, ROOT, first_pose, run
+from installs import PACKAGE, PATIENCE, ROOT, first_message, run
 
 from circle_bounce_ros.installation import child_environment
 
@@ -72,7 +72,7 @@ def test_the_installed_check_accepts_a_packaged_scene(colcon_install, prefix, tm
 def test_the_installed_node_publishes_and_ends_with_status_0(
     colcon_install, prefix, listener, tmp_path
 ):
-    heard = listener('/green/pose')
+    heard = listener('pose', '/green/pose')
     program = prefix / 'lib' / PACKAGE / 'bounce_node'
     log = tmp_path / 'log'
     with log.open('w') as output:
@@ -84,7 +84,7 @@ def test_the_installed_node_publishes_and_ends_with_status_0(
             stderr=subprocess.STDOUT,
         )
     try:
-        assert len(first_pose(heard)) == 2
+        assert len(first_message(heard)) == 2
         node.send_signal(signal.SIGINT)
         assert node.wait(PATIENCE) == 0, log.read_text()
         assert 'Traceback' not in log.read_text()

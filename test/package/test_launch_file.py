@@ -5,7 +5,7 @@ import signal
 import subprocess
 
 import pytest
-from installs import PATIENCE, first_pose
+from installs import PATIENCE, first_message
 
 from circle_bounce_ros.installation import child_environment
 
@@ -15,7 +15,7 @@ pytest.importorskip(
 
 
 def test_ros2_launch_starts_the_node_in_a_namespace(colcon_install, listener, tmp_path):
-    heard = listener('/here/green/pose')
+    heard = listener('pose', '/here/green/pose')
     command = 'ros2 launch circle_bounce_ros bounce.launch.py namespace:=here scene:=lesson'
     launched = subprocess.Popen(
         ['sh', '-c', f'. {colcon_install}/setup.sh && exec {command}'],
@@ -24,7 +24,7 @@ def test_ros2_launch_starts_the_node_in_a_namespace(colcon_install, listener, tm
         start_new_session=True,
     )
     try:
-        assert len(first_pose(heard)) == 2
+        assert len(first_message(heard)) == 2
     finally:
         os.killpg(launched.pid, signal.SIGINT)
         launched.wait(PATIENCE)

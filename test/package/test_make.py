@@ -1,0 +1,80 @@
+"""The two commands, as a stranger types them."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+
+import pytest
+from installs import PATIENCE, ROOT, first_message
+
+from circle_bounce_ros.installation import child_environment
+
+# What the make that runs these tests tells the makes that it starts itself.
+INHERITED = ('MAKEFLAGS', 'MFLAGS', 'MAKELEVEL', 'MAKEOVERRIDES')
+
+
+@pytest.fixture
+def environment():
+    if not (ROOT / '.venv/circle_bounce_ros.json').exists():
+        pytest.skip('no .venv here that `make set-up` has made')
+    return {name: value for name, value in child_environment().items() if name not in INHERITED}
+
+
+def test_make_run_publishes_within_3_seconds_and_ctrl_c_ends_it_cleanly(
+    environment, domain, listener, tmp_path
+):
+    poses, times = listener('pose', '/green/pose'), listener('time', '/time')
+    log = tmp_path / 'log'
+    started = time.time()
+    with log.open('w') as output:
+        make = subprocess.Popen(
+            ['make', 'run'],
+            cwd=ROOT,
+            env=environment | {'ROS_DOMAIN_ID': str(domain)},
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+    try:
+        assert len(first_message(poses)) == 2
+        # When the node began: listeners may find it later, because the middleware asks again after 3 s only.
+        stamp, scene_time = first_message(times)
+        assert stamp - scene_time - started < 3.0
+    finally:
+        # Ctrl-C goes to every process in the terminal.
+        os.killpg(make.pid, signal.SIGINT)
+        status = make.wait(PATIENCE)
+    said = log.read_text()
+    assert status == -signal.SIGINT, said
+    assert '/green/pose' in said
+    assert 'make listen' in said
+    # make reports a child that ends with any status but 0.
+    assert 'make:' not in said
+    assert 'Traceback' not in said
+
+
+@pytest.mark.parametrize(
+    ('words', 'command'),
+    [
+        ([], '--ros-args'),
+        (['SCENE=gas'], "--ros-args -p 'scene:=gas'"),
+        (
+            ['SCENE=my/own.yaml', 'ARGS=-p seed:=3'],
+            "--ros-args -p 'scene:=my/own.yaml' -p seed:=3",
+        ),
+    ],
+)
+def test_make_run_passes_on_the_scene_and_the_arguments(words, command):
+    said = subprocess.check_output(['make', '--dry-run', 'run', *words], cwd=ROOT, text=True)
+    last = said.splitlines()[-1]
+    assert last.split() == ['exec', '.venv/bin/bounce_node', *command.split()]
+
+
+def test_make_help_names_every_command_for_users():
+    said = subprocess.check_output(['make', 'help'], cwd=ROOT, text=True)
+    makefile = (ROOT / 'Makefile').read_text()
+    targets = set(re.findall(r'^([a-z][a-z-]*):', makefile, re.MULTILINE))
+    internal = {'help'} | {name for name in targets if name.startswith('test-')}
+    assert targets - internal == set(re.findall(r'^make ([a-z-]+)  ', said, re.MULTILINE))
