@@ -47,8 +47,6 @@ setup(
             'ruff==0.17.6',
             'mypy==2.4.1',
             'import-linter==2.15',
-            'types-PyYAML',
-            'types-jsonschema',
         ],
         'docs': ['matplotlib>=3.8'],
     },
