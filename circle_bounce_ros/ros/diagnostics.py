@@ -55,10 +55,12 @@ class Diagnostics:
     Parameters
     ----------
     node : Node
+    steady_ns : int, ns
+        What a steady clock reads now.
 
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, steady_ns: int) -> None:
         self._publisher = create_publisher(node, DIAGNOSTICS)
         self._name = f'{node.get_fully_qualified_name()}: simulation'
         self._reported: tuple[Facts, str] | None = None
@@ -69,7 +71,7 @@ class Diagnostics:
         self._late_ticks = 0
         self._last_tick: int | None = None
         self._contacts_per_second = 0.0
-        self._contacts_then = (0, 0)  # steady ns, count
+        self._contacts_then = (steady_ns, 0)
 
     def add_tick(self, steady_ns: int, period_ns: int, progress: Progress) -> None:
         """

@@ -60,7 +60,7 @@ class BounceNode(Node):
             self._settings['start_paused'],
         )
         self._outputs = Publishers(self, self._settings['frame_id'], self._leads)
-        self._diagnostics = Diagnostics(self)
+        self._diagnostics = Diagnostics(self, time.monotonic_ns())
         self._show_scene()
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
