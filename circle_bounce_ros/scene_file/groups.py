@@ -122,9 +122,9 @@ def _positions(
     region: Region, radii: list[float], circles: list[Circle], walls: list[Wall], draw: Draw
 ) -> list[Point]:
     """Return places by the way that suits the packing; what fails there may fit the other way."""
-    packing = math.pi * sum(radius * radius for radius in radii) / region.area
+    covered = math.pi * sum(radius * radius for radius in radii)
     ways = [one_after_the_other, on_a_lattice]
-    if packing >= LATTICE_FROM_PACKING:
+    if covered >= LATTICE_FROM_PACKING * region.area:
         ways.reverse()
     most = 0
     for way in ways:

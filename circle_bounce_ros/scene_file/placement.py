@@ -21,6 +21,9 @@ TRIES = 20_000
 # Lattices are tried from the widest spacing that could hold the group downwards, in steps of this fraction.
 LATTICE_STEP = 0.01
 
+# ... to where the lattice has about this many places for each circle: if those do not do, hardly any is free.
+MOST_PLACES = 20
+
 
 class Region(NamedTuple):
     """The box in which circles are placed, whole circles inside."""
@@ -156,9 +159,10 @@ def on_a_lattice(
     centres = region.shrunk(0.5 * tightest)
     # A hexagonal lattice has one place in sqrt(3) / 2 spacing^2, and at a border more than its share.
     spacing = tightest + math.sqrt(2.0 / math.sqrt(3.0) * region.area / len(radii))
+    smallest = max(tightest, _spacing_of(MOST_PLACES * len(radii), region))
     most: list[Point] = []
-    while spacing > tightest:
-        spacing = max(tightest, spacing * (1.0 - LATTICE_STEP))
+    while spacing > smallest:
+        spacing = max(smallest, spacing * (1.0 - LATTICE_STEP))
         for places in _lattices(centres, spacing):
             if len(places) <= len(most):
                 continue
@@ -167,6 +171,12 @@ def on_a_lattice(
                 return [free[i] for i in choose(draw, len(radii), len(free))]
             most = max(most, free, key=len)
     return most
+
+
+def _spacing_of(places: int, region: Region) -> float:
+    """Return a spacing at which a region, however narrow, has about so many places."""
+    longer_side = max(region.right - region.left, region.top - region.bottom)
+    return max(longer_side / places, math.sqrt(region.area / places))
 
 
 def _free_place(room: Room, centres: Region, radius: float, draw: Draw) -> Point | None:

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import yaml  # type: ignore[import-untyped]  # it has no types
+import yaml
 
 from circle_bounce_ros.kernel import SceneError
 from circle_bounce_ros.scene_file.wording import inside, shortened, shown
@@ -127,16 +127,15 @@ def _document(events: Iterator[yaml.Event]) -> Any:
     next(events)  # the document's end
     event = next(events)
     if not isinstance(event, yaml.StreamEndEvent):
-        line = event.start_mark.line + 1
-        raise SceneError('', f'must be one YAML document, got a second one on line {line}')
+        raise SceneError('', f'must be one YAML document, got a second one on line {_line(event)}')
     return value
 
 
 def _node(event: yaml.Event, events: Iterator[yaml.Event], place: str, depth: int) -> Any:
     if isinstance(event, yaml.AliasEvent):
-        raise SceneError(place, f'must be written out, got the alias {shown("*" + event.anchor)}')
+        raise SceneError(place, f'must be written out, got the alias {shown(f"*{event.anchor}")}')
     if event.anchor is not None:
-        raise SceneError(place, f'must have no anchor, got {shown("&" + event.anchor)}')
+        raise SceneError(place, f'must have no anchor, got {shown(f"&{event.anchor}")}')
     if event.tag is not None:
         raise SceneError(place, f'must have no YAML tag, got {shown(event.tag)}')
     if isinstance(event, yaml.ScalarEvent):
@@ -163,8 +162,7 @@ def _mapping(events: Iterator[yaml.Event], place: str, depth: int) -> dict[str, 
         key = event.value
         inner = inside(place, key)
         if key in items:
-            line = event.start_mark.line + 1
-            raise SceneError(inner, f'must be given once, got it again on line {line}')
+            raise SceneError(inner, f'must be given once, got it again on line {_line(event)}')
         items[key] = _node(next(events), events, inner, depth)
     return items
 
@@ -184,3 +182,7 @@ def _plain(text: str, place: str) -> Any:
             raise SceneError(place, f'must be finite, got {shortened(text)}')
         return number
     return text
+
+
+def _line(event: Any) -> int:
+    return int(event.start_mark.line) + 1

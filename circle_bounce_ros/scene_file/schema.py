@@ -12,10 +12,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any
 
-from jsonschema import (  # type: ignore[import-untyped]  # it has no types
-    Draft202012Validator,
-    ValidationError,
-)
+from jsonschema import Draft202012Validator, ValidationError
 
 from circle_bounce_ros.installation import share_directory
 from circle_bounce_ros.kernel import SceneError
@@ -33,7 +30,7 @@ _TYPES = {
 _RANGES = {'exclusiveMinimum': '>', 'minimum': '>=', 'exclusiveMaximum': '<', 'maximum': '<='}
 
 # Of several faults in one place the first of these is told: a value of the wrong type breaks other rules too.
-_ORDER = ('type', 'additionalProperties', 'required', 'oneOf', 'anyOf')
+_ORDER = ('type', 'additionalProperties', 'required', 'oneOf', 'anyOf', 'exclusiveMinimum')
 
 
 def check(data: Any) -> None:
@@ -71,7 +68,9 @@ def _rank(error: ValidationError, data: Any) -> tuple[list[int], int, str]:
 
 def _sentence(error: ValidationError) -> tuple[str, str]:
     place = _place(error.absolute_path)
-    limit, value, schema = error.validator_value, error.instance, error.schema
+    limit: Any = error.validator_value
+    value: Any = error.instance
+    schema: Any = error.schema
     got = f'got {shown(value)}'
     if error.validator == 'required':
         missing = next(key for key in limit if key not in value)

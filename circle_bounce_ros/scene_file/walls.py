@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 from circle_bounce_ros.kernel import SceneError, Wall
 from circle_bounce_ros.scene_file.wording import shown
 
+# As short as the schema lets a radius be, and far from where an area would be zero by rounding.
+SHORTEST_SIDE = 1e-60  # m
+
 
 class PlacedWall(NamedTuple):
     """A wall and where in the file it comes from."""
@@ -55,6 +58,9 @@ def box_corners(box: dict[str, Any], place: str) -> list[list[float]]:
         if not low < high:
             rule = f'must be > min[{axis}], which is {shown(low)} m'
             raise SceneError(f'{place}.max[{axis}]', f'{rule}, got {shown(high)}')
+        if high - low < SHORTEST_SIDE:
+            rule = f'must be at least {SHORTEST_SIDE:g} m above min[{axis}]'
+            raise SceneError(f'{place}.max[{axis}]', f'{rule}, got {high - low:g} m')
     return [[left, bottom], [right, bottom], [right, top], [left, top]]
 
 

@@ -110,7 +110,7 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
     ),
     'tiny_radius': (
         'circles: [{position: [0, 0], radius: 1e-300}]\n',
-        'circles[0].radius: must be at least 1e-60 m, got 1e-300',
+        'circles[0].radius: must be >= 1e-60 m, got 1e-300',
     ),
     'huge_radius': (
         'circles: [{position: [0, 0], radius: 1e61}]\n',
@@ -355,6 +355,15 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
         'groups: [' + '1,' * 101 + ']\n',
         'groups: must be a list of at most 100 groups, got [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, '
         '1, 1, 1, 1, 1, 1, 1, 1,...',
+    ),
+    'group_of_a_narrow_region': (
+        'groups: [{packing: 0.1, count: 9, region: {min: [0, 0], max: [1e-200, 1]}}]\n',
+        'groups[0].region.max[0]: must be at least 1e-60 m above min[0], got 1e-200 m',
+    ),
+    'group_under_a_large_circle': (
+        'circles: [{position: [0, 0], radius: 99, locked: true}]\n'
+        'groups: [{count: 3, radius: 1e-4, region: {min: [0, 0], max: [50, 50]}}]\n',
+        'groups[0]: must fit into its region without overlap, got room for 0 of 3 circles',
     ),
     'range_upside_down': (
         'groups: [{count: 3, radius: [0.2, 0.1], region: {min: [0, 0], max: [1, 1]}}]\n',
