@@ -205,15 +205,8 @@ def make(environment, key, python, ros_sourced):
     # A sourced ROS builds on the system's packages. The kernel's environment must have none of them.
     sites = ['--system-site-packages'] if ros_sourced and environment != '.venvs/kernel' else []
     run([python['executable'], '-m', 'venv'] + sites + [str(folder)])
-    pip = [
-        str(folder / 'bin/python'),
-        '-m',
-        'pip',
-        '--disable-pip-version-check',
-        'install',
-        '--quiet',
-    ]
-    run(pip + packages(environment, ros_sourced))
+    pip = [str(folder / 'bin/python'), '-m', 'pip', '--disable-pip-version-check']
+    run(pip + ['install', '--quiet', '--use-pep517'] + packages(environment, ros_sourced))
     base = os.path.realpath(str(folder / 'bin/python'))
     finished = stamp.with_suffix('.new')
     finished.write_text(json.dumps({'key': key, 'base': base, 'python': python['executable']}))

@@ -154,7 +154,7 @@ def test_the_kernels_environment_has_numpy_and_pytest_and_nothing_of_the_system(
     machine.set_up(environment='.venvs/kernel', ROS_DISTRO='jazzy')
     venv, pip = machine.calls
     assert '--system-site-packages' not in venv
-    assert pip.endswith('install --quiet numpy pytest')
+    assert pip.endswith('--use-pep517 numpy pytest')
 
 
 def test_another_ros_is_refused(machine):
