@@ -84,7 +84,9 @@ class Circle:
         object.__setattr__(self, 'mass', _positive(self.mass, 'mass', 'kg'))
         object.__setattr__(self, 'locked', _truth(self.locked, 'locked'))
         if self.locked and self.velocity != (0.0, 0.0):
-            raise SceneError('velocity', f'must be (0, 0) for a locked circle, got {self.velocity}')
+            raise SceneError(
+                'velocity', f'must be (0, 0) for a locked circle, got {self.velocity}'
+            )
         if self.name is not None and not is_legal_name(self.name):
             raise SceneError('name', f'{NAME_RULE}, got {self.name!r}')
 
@@ -149,7 +151,9 @@ class Scene:
             raise SceneError('restart_after', f'must be > 0 s, got {self.restart_after}')
         object.__setattr__(self, 'restart_after', restart_after)
         if all(circle.locked for circle in self.circles):
-            raise SceneError('circles', f'at least one must move, got {len(self.circles)}, all locked')
+            raise SceneError(
+                'circles', f'at least one must move, got {len(self.circles)}, all locked'
+            )
         self._check_names()
         self._check_overlaps()
 
@@ -164,7 +168,9 @@ class Scene:
             if circle.name is None:
                 continue
             if circle.name in first:
-                problem = f'must be unique, got {circle.name!r} as for circles[{first[circle.name]}]'
+                problem = (
+                    f'must be unique, got {circle.name!r} as for circles[{first[circle.name]}]'
+                )
                 raise SceneError(f'circles[{index}].name', problem)
             first[circle.name] = index
 

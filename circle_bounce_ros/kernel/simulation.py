@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.engine import records
-from circle_bounce_ros.kernel.engine.build import build
-from circle_bounce_ros.kernel.engine.grid import place_at
-from circle_bounce_ros.kernel.engine.loop import BUDGET_SPENT, DONE, ENDLESS, run, set_clock_back
+from circle_bounce_ros.kernel.engine.driver import Driver
+from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS
 from circle_bounce_ros.kernel.scene import Scene
 
 Floats = NDArray[np.float64]
@@ -59,11 +58,22 @@ class Simulation:
     scene : Scene
     record_contacts : bool
         Keep a log of contacts for `drain_contacts`; may be switched at any time.
+    compiled : bool, optional
+        Run the engine compiled by numba, or as plain Python: the same bits. By default whichever is
+        faster and there; compiling takes some seconds once, and is kept on disk.
+
+    Raises
+    ------
+    ImportError
+        For `compiled=True` where numba is not installed.
 
     """
 
-    def __init__(self, scene: Scene, record_contacts: bool = False) -> None:
+    def __init__(
+        self, scene: Scene, record_contacts: bool = False, *, compiled: bool | None = None
+    ) -> None:
         self._scene = scene
+        self._compiled = compiled
         self._ids = np.array([i for i, c in enumerate(scene.circles) if not c.locked], np.int64)
         self._radii = np.array([c.radius for c in scene.circles if not c.locked], np.float64)
         self._masses = np.array([c.mass for c in scene.circles if not c.locked], np.float64)
@@ -72,7 +82,7 @@ class Simulation:
         self._start(record_contacts)
 
     def _start(self, record_contacts: bool) -> None:
-        self._world = build(self._scene, record_contacts)
+        self._driver = Driver(self._scene, record_contacts, self._compiled)
         self._time = 0.0
 
     def reset(self) -> None:
@@ -109,30 +119,21 @@ class Simulation:
             raise ValueError(f'time: must be finite, got {time}')
         if time < self._time:
             raise ValueError(f'time: must not be before {self._time} s, got {time}')
-        budget = math.inf if at_most is None else at_most
-        while True:
-            before = self._world.events
-            why = run(self._world, time - self._world.epoch, budget)
-            budget -= self._world.events - before
-            if why == DONE:
-                self._time = time
-                return True
-            if why == BUDGET_SPENT:
-                self._stop_at_last_event()
-                return False
-            if why == ENDLESS:
-                self._stop_at_last_event()
-                raise EndlessContactsError(self._describe_crowd())
-            set_clock_back(self._world)
-
-    def _stop_at_last_event(self) -> None:
-        self._time = max(self._time, self._world.epoch + self._world.time)
+        why = self._driver.run(time, at_most)
+        if why == DONE:
+            self._time = time
+            return True
+        self._time = max(self._time, self._driver.reached)
+        if why == ENDLESS:
+            raise EndlessContactsError(self._describe_crowd())
+        return False
 
     def _describe_crowd(self) -> str:
-        circle = self._world.moving[self._world.tree_who[1]]
+        world = self._driver.world
+        circle = int(self._ids[world.tree_who[1]])
         return (
-            f'{self._scene.label(circle.id)}: contacts without end at {self._time:.9g} s, more than '
-            f'{self._world.patience} of them within {self._world.crowd_span:.3g} s'
+            f'{self._scene.label(circle)}: contacts without end at {self._time:.9g} s, more than '
+            f'{world.patience} of them within {world.crowd_span:.3g} s'
         )
 
     @property
@@ -163,27 +164,26 @@ class Simulation:
     @property
     def positions(self) -> Floats:
         """The centres of the moving circles at `.time`, (n, 2), m."""
-        now = self._time - self._world.epoch
-        return np.array([place_at(circle, now) for circle in self._world.moving], np.float64)
+        return self._driver.positions(self._time)
 
     @property
     def velocities(self) -> Floats:
         """The velocities of the moving circles at `.time`, (n, 2), m/s."""
-        return np.array([(circle.vx, circle.vy) for circle in self._world.moving], np.float64)
+        return self._driver.velocities()
 
     @property
     def contact_count(self) -> int:
         """How many contacts there have been since the first instant."""
-        return self._world.contacts
+        return int(self._driver.get('contacts'))
 
     @property
     def record_contacts(self) -> bool:
         """Whether contacts are logged from here on."""
-        return self._world.keep_log
+        return bool(self._driver.get('keep_log'))
 
     @record_contacts.setter
     def record_contacts(self, wanted: bool) -> None:
-        self._world.keep_log = wanted
+        self._driver.set('keep_log', int(wanted))
 
     def drain_contacts(self) -> NDArray[np.void]:
         """
@@ -194,6 +194,4 @@ class Simulation:
         (k,) structured array of dtype `CONTACT`
 
         """
-        contacts = np.array(self._world.log, CONTACT)
-        self._world.log = []
-        return contacts
+        return self._driver.drain().astype(CONTACT)

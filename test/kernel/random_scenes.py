@@ -94,7 +94,9 @@ def random_scene(kind, seed):
 def _clear_of(walls, circle):
     """Is the circle further than its radius from points along each wall, closely spaced?"""
     return all(
-        math.dist(circle.position, [a + k / 50 * (b - a) for a, b in zip(w.start, w.end, strict=True)])
+        math.dist(
+            circle.position, [a + k / 50 * (b - a) for a, b in zip(w.start, w.end, strict=True)]
+        )
         > 1.5 * circle.radius
         for w in walls
         for k in range(51)

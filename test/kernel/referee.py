@@ -168,7 +168,9 @@ class Referee:
         """No contact was missed up to a time."""
         for i, times in self.soonest.items():
             if times.min() < time - self._slack(i):
-                raise Fault(f'circle {i} touches {times.argmin()} at {times.min()}: not in the log')
+                raise Fault(
+                    f'circle {i} touches {times.argmin()} at {times.min()}: not in the log'
+                )
 
 
 def replay(scene, contacts, until):

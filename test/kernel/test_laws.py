@@ -38,7 +38,9 @@ def test_momentum_and_energy_stay_where_nothing_is_locked():
     """A cloud that falls in on itself, in the open plane."""
     rng = random.Random(5)
     circles = [
-        Circle(c.position, (-c.position[0] + 3.0, -c.position[1] - 2.0), radius=c.radius, mass=c.mass)
+        Circle(
+            c.position, (-c.position[0] + 3.0, -c.position[1] - 2.0), radius=c.radius, mass=c.mass
+        )
         for c in place(rng, 60, [0.5, 0.2], 10.0)
     ]
     simulation = Simulation(Scene(circles))

@@ -5,16 +5,17 @@ import pytest
 from random_scenes import KINDS, random_scene
 from referee import CIRCLE, WALL, Fault, replay
 
-from circle_bounce_ros.kernel import ContactKind, Simulation
+from circle_bounce_ros.kernel import ContactKind, Scene, Simulation
 from circle_bounce_ros.kernel.engine import grid, loop, plan
 from circle_bounce_ros.kernel.engine.records import NOTHING
 
 
-def contacts_of(scene, until):
-    simulation = Simulation(scene, record_contacts=True)
+def contacts_of(scene, until, **options):
+    simulation = Simulation(scene, record_contacts=True, **options)
     simulation.advance_to(until)
-    assert len(simulation._world.log) == simulation.contact_count
-    return simulation.drain_contacts()
+    contacts = simulation.drain_contacts()
+    assert len(contacts) == simulation.contact_count
+    return contacts
 
 
 def duration(kind):
@@ -75,35 +76,39 @@ def test_referee_catches_a_forged_contact(honest, field, change):
 
 
 def test_referee_catches_an_engine_that_looks_in_its_own_cell_only(monkeypatch):
-    def short_sighted(world, circle, side):
-        return list(world.grid.members[circle.cell])
+    def short_sighted(world, table, cell, side, count):
+        at = table.slot + table.room * cell
+        members = world.filled[table.first + cell]
+        world.near[count : count + members] = world.slots[at : at + members]
+        return count + members
 
-    monkeypatch.setattr(plan, 'gather', short_sighted)
+    monkeypatch.setattr(grid, 'gather_around', short_sighted)
     scene = random_scene('box', 0)
     with pytest.raises(Fault):
-        replay(scene, contacts_of(scene, 20.0), 20.0)
+        replay(scene, contacts_of(scene, 20.0, compiled=False), 20.0)
 
 
 def test_referee_catches_an_engine_that_forgets_a_wall():
     scene = random_scene('tilted', 0)
     contacts = contacts_of(scene, 20.0)
     wall = int(contacts['b'][contacts['kind'] == WALL][0])
-    simulation = Simulation(scene, record_contacts=True)
-    for flats in simulation._world.grid.flats:
-        if wall in flats:
-            flats.remove(wall)
+    simulation = Simulation(scene, record_contacts=True, compiled=False)
+    numbers = simulation._driver.world.flat_numbers
+    numbers[:] = [
+        (number + 1) % len(scene.walls) if number == wall else number for number in numbers
+    ]
     simulation.advance_to(20.0)
     with pytest.raises(Fault):
         replay(scene, simulation.drain_contacts(), 20.0)
 
 
 def test_referee_catches_an_engine_that_acts_on_stale_plans(monkeypatch):
-    monkeypatch.setattr(loop, '_is_contact', lambda world, i: world.moving[i].kind != NOTHING)
+    monkeypatch.setattr(loop, 'is_contact', lambda world, circle: circle.kind != NOTHING)
     caught = 0
     for seed in range(6):
         scene = random_scene('mixed', seed)
         try:
-            replay(scene, contacts_of(scene, 20.0), 20.0)
+            replay(scene, contacts_of(scene, 20.0, compiled=False), 20.0)
         except Fault:
             caught += 1
     assert caught > 0
@@ -111,21 +116,46 @@ def test_referee_catches_an_engine_that_acts_on_stale_plans(monkeypatch):
 
 @pytest.mark.parametrize('kind', KINDS)
 def test_the_grid_changes_no_bit(kind, monkeypatch):
-    """With one cell list for all, every pair is looked at: an engine without a grid."""
+    """Everybody looks at everybody and at all that is locked: an engine without a grid."""
     scene = random_scene(kind, 5)
     until = duration(kind)
     with_grid = contacts_of(scene, until)
-
-    def everyone(world, circle, side):
-        return list(range(len(world.moving)))
-
-    monkeypatch.setattr(plan, 'gather', everyone)
-    monkeypatch.setattr(grid, 'list_number', lambda grid, ix, iy: 0)
-    without = Simulation(scene, record_contacts=True)
-    world = without._world
-    for lists, all_of in ((world.grid.locked, world.locked), (world.grid.flats, world.flats)):
-        for members in lists:
-            members[:] = range(len(all_of))
+    monkeypatch.setattr(grid, 'gather', lambda world, circle, side: grid.gather_everyone(world))
+    monkeypatch.setattr(plan, 'gather', grid.gather)
+    without = Simulation(scene, record_contacts=True, compiled=False)
+    world = without._driver.world
+    world.near.extend([0] * len(world.moving))
+    world.post_numbers[:] = range(len(world.posts))
+    world.flat_numbers[:] = range(len(world.flats))
+    for cell in world.cells:
+        cell.first_post, cell.end_post = 0, len(world.posts)
+        cell.first_flat, cell.end_flat = 0, len(world.flats)
     without.advance_to(until)
     assert with_grid.tobytes() == without.drain_contacts().tobytes()
     assert (with_grid['kind'] == CIRCLE).any() == (kind != 'pass_through')
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_plain_and_compiled_code_give_the_same_bits(kind):
+    pytest.importorskip('numba', reason='numba is not installed: there is only the plain engine')
+    scene = random_scene(kind, 2)
+    plain = contacts_of(scene, duration(kind), compiled=False)
+    assert len(plain) > 20
+    assert plain.tobytes() == contacts_of(scene, duration(kind), compiled=True).tobytes()
+
+
+def test_circles_followed_alone_do_what_the_queue_would_make_them_do():
+    """Circles that pass through each other have a short cut of their own: same contacts, same bits."""
+    scene = random_scene('pass_through', 4)
+    alone = contacts_of(scene, 100.0)
+    one_by_one = [
+        contacts_of(Scene([circle, *(c for c in scene.circles if c.locked)], scene.walls), 100.0)
+        for circle in scene.circles
+        if not circle.locked
+    ]
+    assert len(alone) == sum(map(len, one_by_one))
+    moving = [i for i, c in enumerate(scene.circles) if not c.locked]
+    for i, contacts in zip(moving, one_by_one, strict=True):
+        mine = alone[alone['a'] == i]
+        assert np.allclose(mine['time'], contacts['time'], rtol=0, atol=1e-9)
+        assert mine['kind'].tolist() == contacts['kind'].tolist()

@@ -1,24 +1,34 @@
-"""A world from a scene: records, and cells of the right width with what is locked entered in them."""
+"""A world from a scene: records, levels of cells of the right width, and what is locked entered in them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from typing import Any
 
-from circle_bounce_ros.kernel.engine import tournament
-from circle_bounce_ros.kernel.engine.grid import list_number, settle
+import numpy as np
+from numpy.typing import NDArray
+
+from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN
 from circle_bounce_ros.kernel.engine.records import (
+    CELL,
+    FLAT,
     LOCKED,
+    MOVING,
+    NOTE,
+    NOTHING,
+    POST,
+    STATE,
+    TABLE,
     WALL_END,
-    Flat,
-    Grid,
-    Locked,
-    Moving,
     World,
 )
-from circle_bounce_ros.kernel.impact import wall_frame
+from circle_bounce_ros.kernel.impact import NEVER, wall_frame
 from circle_bounce_ros.kernel.scene import Scene
 
-# Every tolerance of the engine, with what it does.
+Array = NDArray[Any]
+
+# Every number below is a choice that costs time or memory when it is wrong, never a digit, but for the first.
 
 # A circle travels about so many radii before the clocks are set back. More: contact instants lose digits
 # (at 1,000 radii about 1e-13 of a radius). Less: the planning afresh that goes with it costs time.
@@ -30,64 +40,129 @@ PATIENCE = 1000
 PATIENCE_PER_CIRCLE = 100
 CROWD_RADII = 1e-9
 
-# Cells are wider than the widest circle by this fraction, so that rounding cannot put two circles that touch
-# into cells that are no neighbours.
-CELL_MARGIN = 1e-9
-
 # In a thin scene cells grow to this fraction of the mean spacing: fewer borders to cross.
 CELLS_PER_SPACING = 0.5
+
+# A level is split off for smaller circles where nine of its cells would hold more than this many.
+CROWDED = 32
 
 # No more cells than this along the longer side: memory.
 MOST_CELLS_A_SIDE = 4096
 
+# Contacts are logged in blocks of so many.
+LOG_BLOCK = 4096
+
+CACHE_LINE = 64
+
 
 def build(scene: Scene, keep_log: bool) -> World:
-    """Return the world of a scene at time zero."""
-    moving = [
-        Moving(index, *circle.position, *circle.velocity, circle.radius, circle.mass)
-        for index, circle in enumerate(scene.circles)
-        if not circle.locked
-    ]
-    locked = [
-        Locked(LOCKED, index, *circle.position, circle.radius)
+    """Return the world of a scene at time zero, in arrays."""
+    moving = _moving(scene)
+    posts, flats = _locked(scene)
+    x0, y0, x1, y1 = _home(moving, posts)
+    widths = _widths(moving['radius'], x1 - x0, y1 - y0, scene.moving_circles_collide)
+    tables, around = _tables(widths, x1 - x0, y1 - y0)
+    levels = len(widths)
+    moving['level'] = np.searchsorted(widths, 2.0 * moving['radius'] * (1.0 + CELL_MARGIN))
+    cells, post_numbers, flat_numbers = _enter_locked(tables[:levels], posts, flats, x0, y0)
+    filled, slots = _enter_moving(tables, moving, x0, y0, scene.moving_circles_collide)
+
+    count = len(moving)
+    leaf = 1 << max(0, (count - 1).bit_length())
+    tree_time, tree_who = _tournament(count, leaf)
+    state = np.zeros(1, STATE)
+    state['crowd_ends'] = -NEVER
+    state['keep_log'] = keep_log
+    travel = _typical_speed(moving) / float(moving['radius'].min())
+    far = max(x1 - x0, y1 - y0, 2.0 * float(widths[-1]))
+    return World(
+        moving=moving,
+        posts=posts,
+        flats=flats,
+        tables=tables,
+        cells=cells,
+        filled=filled,
+        slots=slots,
+        near=_scratch(tables, count),
+        around=around,
+        away=np.zeros(count, np.int32),
+        post_numbers=post_numbers,
+        flat_numbers=flat_numbers,
+        tree_time=tree_time,
+        tree_who=tree_who,
+        log=np.zeros(LOG_BLOCK, NOTE),
+        state=state,
+        leaf=leaf,
+        levels=levels,
+        x0=x0,
+        y0=y0,
+        porch_x0=x0 - far,
+        porch_y0=y0 - far,
+        porch_x1=x1 + far,
+        porch_y1=y1 + far,
+        edge=float(widths[-1]),
+        span=_power_of_two(RADII_PER_SPAN / travel) if travel > 0.0 else 1.0,
+        crowd_span=CROWD_RADII / travel if travel > 0.0 else 1.0,
+        patience=PATIENCE + PATIENCE_PER_CIRCLE * count,
+    )
+
+
+def with_more_room(world: World) -> World:
+    """Return the world with twice the room in the lists of every table that has a full one."""
+    tables, filled, old = world.tables.copy(), world.filled, world.slots
+    blocks = []
+    slot = 0
+    for table in tables:
+        lists = table['mask'] + 1
+        members = old[table['slot'] : table['slot'] + lists * table['room']].reshape(lists, -1)
+        if filled[table['first'] : table['first'] + lists].max() == table['room']:
+            members = np.hstack([members, np.zeros_like(members)])
+        table['slot'], table['room'] = slot, members.shape[1]
+        slot += members.size
+        blocks.append(members.ravel())
+    slots = np.concatenate([*blocks, np.zeros(2, np.int32)])
+    near = _scratch(tables, len(world.moving))
+    return world._replace(tables=tables, slots=slots, near=near)
+
+
+def _moving(scene: Scene) -> Array:
+    circles = [(index, c) for index, c in enumerate(scene.circles) if not c.locked]
+    moving = _aligned(len(circles), MOVING)
+    moving['id'] = [index for index, _ in circles]
+    moving['x'], moving['y'] = np.array([c.position for _, c in circles]).T
+    moving['vx'], moving['vy'] = np.array([c.velocity for _, c in circles]).T
+    moving['radius'] = [c.radius for _, c in circles]
+    moving['mass'] = [c.mass for _, c in circles]
+    moving['kind'] = NOTHING  # planned for at time 0, first thing
+    moving['time_of_cell'] = NEVER
+    return moving
+
+
+def _locked(scene: Scene) -> tuple[Array, Array]:
+    posts = [
+        (*circle.position, circle.radius, LOCKED, index)
         for index, circle in enumerate(scene.circles)
         if circle.locked
     ]
-    flats = []
     ends: dict[tuple[float, float], int] = {}
     for number, wall in enumerate(scene.walls):
-        flats.append(Flat(number, *wall.start, *wall_frame(*wall.start, *wall.end)))
         ends.setdefault(wall.start, number)
         ends.setdefault(wall.end, number)
-    locked += [Locked(WALL_END, number, *end, 0.0) for end, number in ends.items()]
-
-    travel = _typical_speed(moving) / min(circle.radius for circle in moving)
-    world = World(
-        moving,
-        locked,
-        flats,
-        _make_grid(moving, locked),
-        scene.moving_circles_collide,
-        keep_log,
-        span=_power_of_two(RADII_PER_SPAN / travel) if travel > 0.0 else 1.0,
-        crowd_span=CROWD_RADII / travel if travel > 0.0 else 1.0,
-        patience=PATIENCE + PATIENCE_PER_CIRCLE * len(moving),
-    )
-    _enter_locked(world)
-    for i, circle in enumerate(moving):
-        settle(world, i, circle.x, circle.y)
-        tournament.enter(world, i, circle.time_of_hit)
-    return world
+    posts += [(*end, 0.0, WALL_END, number) for end, number in ends.items()]
+    flats = [
+        (*wall.start, *wall_frame(*wall.start, *wall.end), number)
+        for number, wall in enumerate(scene.walls)
+    ]
+    return np.array(posts, POST), np.array(flats, FLAT)
 
 
-def _typical_speed(moving: list[Moving]) -> float:
+def _typical_speed(moving: Array) -> float:
     """Return a speed, m/s, that is seldom exceeded: the initial ones, four times the thermal one."""
-    squares = [circle.vx * circle.vx + circle.vy * circle.vy for circle in moving]
-    # fsum, not sum: that one rounds differently since Python 3.12.
-    energy = math.fsum(circle.mass * sq for circle, sq in zip(moving, squares, strict=True)) / 2.0
-    lightest = min(circle.mass for circle in moving)
-    thermal = math.sqrt(2.0 * energy / (len(moving) * lightest))
-    return max(math.sqrt(max(squares)), 4.0 * thermal)
+    squares = moving['vx'] * moving['vx'] + moving['vy'] * moving['vy']
+    # fsum, not sum: no order of adding up can change the result.
+    energy = math.fsum((moving['mass'] * squares).tolist()) / 2.0
+    thermal = math.sqrt(2.0 * energy / (len(moving) * float(moving['mass'].min())))
+    return max(math.sqrt(squares.max()), 4.0 * thermal)
 
 
 def _power_of_two(value: float) -> float:
@@ -95,64 +170,215 @@ def _power_of_two(value: float) -> float:
     return math.ldexp(0.5, math.frexp(value)[1])
 
 
-def _make_grid(moving: list[Moving], locked: list[Locked]) -> Grid:
-    widest = 2.0 * max(circle.radius for circle in moving)
-    discs = [(circle.x, circle.y, 0.0) for circle in moving]
-    discs += [(post.x, post.y, post.radius) for post in locked]
-    # Beyond home nothing locked can be touched.
-    x0, y0 = (min(disc[k] - disc[2] for disc in discs) - widest for k in (0, 1))
-    x1, y1 = (max(disc[k] + disc[2] for disc in discs) + widest for k in (0, 1))
-    spacing = math.sqrt((x1 - x0) * (y1 - y0) / len(moving))
-    longer = max(x1 - x0, y1 - y0)
-    width = max(
-        widest * (1.0 + CELL_MARGIN), CELLS_PER_SPACING * spacing, longer / MOST_CELLS_A_SIDE
+# ------------------------------------------------------------------ the grid
+
+
+def _home(moving: Array, posts: Array) -> tuple[float, float, float, float]:
+    """Return the box beyond which nothing locked can be touched and nobody starts."""
+    widest = 2.0 * float(moving['radius'].max())
+    box = []
+    for axis in ('x', 'y'):
+        low, high = [moving[axis].min()], [moving[axis].max()]
+        if len(posts):
+            low.append((posts[axis] - posts['radius']).min())
+            high.append((posts[axis] + posts['radius']).max())
+        box.append((float(min(low)) - widest, float(max(high)) + widest))
+    (x0, x1), (y0, y1) = box
+    return x0, y0, x1, y1
+
+
+def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
+    """
+    Return the widths of the cells of each level, finest first, each a power of two times the finest.
+
+    One level serves all circles unless nine of its cells would hold more than CROWDED of them; then
+    the circles that fit into cells a quarter as wide get a level of their own, and so on.
+    """
+    area = width * height
+
+    def least(fitting: Array) -> float:
+        spacing = CELLS_PER_SPACING * math.sqrt(area / len(fitting))
+        widest = 2.0 * float(fitting.max()) * (1.0 + CELL_MARGIN)
+        return max(widest, spacing, max(width, height) / MOST_CELLS_A_SIDE)
+
+    widths = [least(radii)]
+    while collide and 9.0 * widths[-1] ** 2 * len(radii) > CROWDED * area:
+        radii = radii[2.0 * radii * (1.0 + CELL_MARGIN) <= widths[-1] / 4.0]
+        if len(radii) == 0 or least(radii) > widths[-1] / 4.0:
+            break
+        finer = widths[-1] / 4.0
+        while finer / 2.0 >= least(radii):
+            finer /= 2.0
+        widths.append(finer)
+    return np.array(widths[::-1])
+
+
+def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
+    """Return the tables of residents and of guests, without members, and each level's neighbours."""
+    levels = len(widths)
+    tables = np.zeros(2 * levels, TABLE)
+    around = []
+    for number, table in enumerate(tables):
+        level = number % levels
+        columns, rows = (max(1, math.ceil(side / widths[level])) for side in (width, height))
+        # Four cells a side at least, so that nine have nine lists; the finest level has no guests.
+        bits = [
+            max(2, (cells - 1).bit_length()) if number != levels else 0
+            for cells in (columns, rows)
+        ]
+        table['width'] = widths[level]
+        table['shift'] = round(math.log2(widths[level] / widths[0]))
+        table['bits'], table['mask'] = bits[0], (1 << sum(bits)) - 1
+        table['columns'], table['rows'] = columns, rows
+        table['around'] = 21 * level
+        if number < levels:
+            row = 1 << bits[0]
+            left, right = [-1 - row, -1, -1 + row], [1 - row, 1, 1 + row]
+            down, up = [-1 - row, -row, 1 - row], [-1 + row, row, 1 + row]
+            around += [*left, *right, *down, *up, *left, -row, 0, row, *right]
+    return tables, np.array(around, np.int64)
+
+
+def _enter_moving(
+    tables: Array, moving: Array, x0: float, y0: float, collide: bool
+) -> tuple[Array, Array]:
+    """Enter each circle in its cell, and in the lists of residents and guests; return the lists."""
+    levels = len(tables) // 2
+    first = slot = 0
+    filled, slots = [], []
+    for number, table in enumerate(tables):
+        level = number % levels
+        mine = moving['level'] == level if number < levels else moving['level'] < level
+        width = table['width']
+        column = np.floor((moving['x'] - x0) / width).astype(np.int64)
+        row = np.floor((moving['y'] - y0) / width).astype(np.int64)
+        if number >= levels:
+            # As `grid` does: from the cell on the own level, so that rounding is the same.
+            up = table['shift'] - tables['shift'][moving['level']]
+            column, row = moving['column'] >> np.maximum(up, 0), moving['row'] >> np.maximum(up, 0)
+        cell = (column + (row << table['bits'])) & table['mask']
+        if number < levels:
+            for name, values in (('column', column), ('row', row), ('cell', cell)):
+                moving[name][mine] = values[mine]
+        ids, lists = np.flatnonzero(mine), int(table['mask']) + 1
+        cell = cell[mine]
+        counts = np.bincount(cell, minlength=lists) if collide else np.zeros(lists, np.int64)
+        room = 4 if collide else 1
+        while room < counts.max() + 1:
+            room *= 2
+        members = np.zeros((lists, room), np.int32)
+        if collide:
+            order = np.argsort(cell, kind='stable')
+            places = np.arange(len(ids)) - np.repeat(np.cumsum(counts) - counts, counts)
+            members[cell[order], places] = ids[order]
+        table['first'], table['slot'], table['room'] = first, slot, room
+        first += lists
+        slot += members.size
+        filled.append(counts.astype(np.int32))
+        slots.append(members.ravel())
+    return np.concatenate(filled), np.concatenate([*slots, np.zeros(2, np.int32)])
+
+
+def _scratch(tables: Array, count: int) -> Array:
+    """Return room for all that `grid.gather` may write."""
+    return np.zeros(9 * int(tables['room'].sum()) + 2 * count + 2, np.int32)
+
+
+def _enter_locked(
+    tables: Array, posts: Array, flats: Array, x0: float, y0: float
+) -> tuple[Array, Array, Array]:
+    """Enter each post and flat in every cell from which a circle of that level could touch it."""
+    post_lists: list[list[int]] = []
+    flat_lists: list[list[int]] = []
+    for table in tables:
+        lists = int(table['mask']) + 1
+        of_posts: list[list[int]] = [[] for _ in range(lists)]
+        of_flats: list[list[int]] = [[] for _ in range(lists)]
+        for number, post in enumerate(posts):
+            for cell in _cells_near_post(table, post, x0, y0):
+                of_posts[cell].append(number)
+        for number, flat in enumerate(flats):
+            for cell in _cells_near_flat(table, flat, x0, y0):
+                of_flats[cell].append(number)
+        post_lists += of_posts
+        flat_lists += of_flats
+    cells = np.zeros(len(post_lists), CELL)
+    cells['first_post'], cells['end_post'], post_numbers = _ranges(post_lists)
+    cells['first_flat'], cells['end_flat'], flat_numbers = _ranges(flat_lists)
+    return cells, post_numbers, flat_numbers
+
+
+def _cells_near_post(table: Array, post: Array, x0: float, y0: float) -> list[int]:
+    half = float(table['width']) / 2.0
+    reach = float(post['radius']) + half * (1.0 + 1e-6)  # far more than rounding
+    px, py = float(post['x']), float(post['y'])
+    column, row, x, y = _cells(table, (px, px), (py, py), reach, x0, y0)
+    beyond = np.hypot(
+        np.maximum(np.abs(x - px) - half, 0.0), np.maximum(np.abs(y - py) - half, 0.0)
     )
-    far = max(longer, 2.0 * width)
-    columns, rows = (max(1, math.ceil(side / width)) for side in (x1 - x0, y1 - y0))
-    return Grid(x0, y0, width, columns, rows, (x0 - far, y0 - far, x1 + far, y1 + far))
+    return _list_numbers(table, column[beyond <= reach], row[beyond <= reach])
 
 
-def _enter_locked(world: World) -> None:
-    """Enter each locked circle and flat in every cell from which a circle could touch it."""
-    grid = world.grid
-    half = grid.width / 2.0
-    margin = 1e-6 * grid.width  # far more than rounding, for a cell too many now and then
-    for number, post in enumerate(world.locked):
-        reach = post.radius + half + margin
-        box = (post.x - reach, post.y - reach, post.x + reach, post.y + reach)
-        for ix, iy, x, y in _cells(grid, *box):
-            away = math.hypot(max(abs(x - post.x) - half, 0.0), max(abs(y - post.y) - half, 0.0))
-            if away <= reach:
-                _enter(grid.locked[list_number(grid, ix, iy)], number)
-    for number, flat in enumerate(world.flats):
-        reach = half + margin
-        end_x, end_y = flat.x + flat.length * flat.ny, flat.y - flat.length * flat.nx
-        box = (
-            min(flat.x, end_x) - reach,
-            min(flat.y, end_y) - reach,
-            max(flat.x, end_x) + reach,
-            max(flat.y, end_y) + reach,
-        )
-        # Half the extent of a cell across the wall.
-        across = half * (abs(flat.nx) + abs(flat.ny))
-        for ix, iy, x, y in _cells(grid, *box):
-            if abs((x - flat.x) * flat.nx + (y - flat.y) * flat.ny) <= reach + across:
-                _enter(grid.flats[list_number(grid, ix, iy)], number)
+def _cells_near_flat(table: Array, flat: Array, x0: float, y0: float) -> list[int]:
+    half = float(table['width']) / 2.0
+    reach = half * (1.0 + 1e-6)
+    sx, sy, nx, ny, length = (float(flat[name]) for name in ('x', 'y', 'nx', 'ny', 'length'))
+    xs, ys = sorted((sx, sx + length * ny)), sorted((sy, sy - length * nx))
+    column, row, x, y = _cells(table, xs, ys, reach, x0, y0)
+    # Half the extent of a cell across the wall, and the reach of a circle in it.
+    near = np.abs((x - sx) * nx + (y - sy) * ny) <= half * (abs(nx) + abs(ny)) + reach
+    return _list_numbers(table, column[near], row[near])
 
 
 def _cells(
-    grid: Grid, x_min: float, y_min: float, x_max: float, y_max: float
-) -> list[tuple[int, int, float, float]]:
-    """Return column, row and centre of the cells that a box meets."""
-    w = grid.width
-    columns = range(math.floor((x_min - grid.x0) / w), math.floor((x_max - grid.x0) / w) + 1)
-    rows = range(math.floor((y_min - grid.y0) / w), math.floor((y_max - grid.y0) / w) + 1)
-    return [
-        (ix, iy, grid.x0 + (ix + 0.5) * w, grid.y0 + (iy + 0.5) * w) for ix in columns for iy in rows
+    table: Array, xs: Any, ys: Any, reach: float, x0: float, y0: float
+) -> tuple[Array, Array, Array, Array]:
+    """Return column, row and centre of all cells that a box meets."""
+    width = float(table['width'])
+    ranges = [
+        np.arange(
+            math.floor((low - reach - zero) / width), math.floor((high + reach - zero) / width) + 1
+        )
+        for (low, high), zero in ((xs, x0), (ys, y0))
     ]
+    column, row = (axis.ravel() for axis in np.meshgrid(*ranges))
+    return column, row, x0 + (column + 0.5) * width, y0 + (row + 0.5) * width
 
 
-def _enter(members: list[int], number: int) -> None:
-    """Add a number to a list that far-away cells share, once."""
-    if number not in members:
-        members.append(number)
+def _list_numbers(table: Array, column: Array, row: Array) -> list[int]:
+    numbers = (column + (row << int(table['bits']))) & int(table['mask'])
+    return list(np.unique(numbers).tolist())
+
+
+def _ranges(lists: list[list[int]]) -> tuple[Array, Array, Array]:
+    """Return where each list begins and ends in all of them one after the other."""
+    ends = np.cumsum([len(numbers) for numbers in lists])
+    begins = np.concatenate([[0], ends[:-1]])
+    flat: Iterator[int] = (number for numbers in lists for number in numbers)
+    return begins, ends, np.fromiter(flat, np.int32)
+
+
+# ------------------------------------------------------------------ the tournament
+
+
+def _tournament(count: int, leaf: int) -> tuple[Array, Array]:
+    """Return the tree in which everybody has time 0."""
+    times = _aligned(2 * leaf, np.dtype(np.float64))
+    times[:] = NEVER
+    times[leaf : leaf + count] = 0.0
+    who = np.zeros(2 * leaf, np.int32)
+    who[leaf : leaf + count] = np.arange(count)
+    first = leaf
+    while first > 1:
+        pairs = times[first : 2 * first].reshape(-1, 2)
+        winner = np.arange(first, 2 * first, 2) + (pairs[:, 1] < pairs[:, 0])
+        first //= 2
+        times[first : 2 * first], who[first : 2 * first] = times[winner], who[winner]
+    return times, who
+
+
+def _aligned(count: int, dtype: np.dtype[Any]) -> Array:
+    """Return zeros that begin at the start of a cache line."""
+    raw = np.zeros(count * dtype.itemsize + CACHE_LINE, np.uint8)
+    skip = -raw.ctypes.data % CACHE_LINE
+    return raw[skip : skip + count * dtype.itemsize].view(dtype)

@@ -1,124 +1,325 @@
 """
-Who is near: square cells, at least as wide as the widest circle.
+Who is near: square cells, on a level for every class of size.
 
-Two circles can touch only when their cells are the same or neighbours. The plane has no end, the lists have:
-a cell's number is cut to its low bits, so that far-away cells share a list. That costs a look at circles which
-are not near and changes no result.
+The plane is cut into cells without end, once for every level; a cell of a coarser level is 2^shift cells of the
+finest wide, so that its borders are borders of all finer levels too. A circle is a resident on the level whose
+cells it fits in, `(column, row)` is its cell there, and a guest on every coarser level. Two circles can touch only
+when their cells on the level of the larger one are the same or neighbours.
 
-A circle that has gone beyond the porch around everything locked is away: it is in no cell and pays for none. Its
-path is straight and the porch convex, so it comes back at a known time or never. Who is inside home cannot
-touch who is away; who is on the porch, or away, looks at all that are.
+Each cell has a list. A cell's number is cut to its low bits, so that far-away cells share a list: that costs a
+look at circles which are not near and changes no result. Lists have room for so many; when one is full the caller
+is told before anything has changed.
+
+A circle that has gone beyond the porch around everything locked is away (`level == levels`): it is in no list and
+pays for none. Its path is straight and the porch convex, so it comes back at a known time or never. Who is inside
+home cannot touch who is away; who is on the porch, or away, looks at all that are.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from circle_bounce_ros.kernel.engine.records import DOWN, EVERYWHERE, LEFT, Grid, Moving, World
+from circle_bounce_ros.kernel.engine.records import DOWN, EVERYWHERE, LEFT, Record, World
 from circle_bounce_ros.kernel.impact import NEVER
 
-
-def list_number(grid: Grid, ix: int, iy: int) -> int:
-    """Return the number of the list that cell (ix, iy) uses."""
-    return (ix + (iy << grid.bits)) & grid.mask
-
-
-def settle(world: World, i: int, x: float, y: float) -> None:
-    """Enter circle i, which is in no cell, in the one that (x, y) lies in."""
-    grid, circle = world.grid, world.moving[i]
-    circle.ix = math.floor((x - grid.x0) / grid.width)
-    circle.iy = math.floor((y - grid.y0) / grid.width)
-    circle.cell = list_number(grid, circle.ix, circle.iy)
-    grid.members[circle.cell].append(i)
+# Cells are wider than their circles by this fraction, so that rounding cannot put two circles that touch
+# into cells that are no neighbours.
+CELL_MARGIN = 1e-9
 
 
-def cross(world: World, i: int, now: float) -> int:
-    """
-    Carry out the change of cell that circle i has planned.
-
-    Returns
-    -------
-    int
-        The side whose cells have come into reach.
-
-    """
-    grid, circle = world.grid, world.moving[i]
-    x, y = place_at(circle, now)
-    if circle.away:
-        circle.away = False
-        world.away.remove(i)
-        settle(world, i, x, y)
-        return EVERYWHERE
-    grid.members[circle.cell].remove(i)
-    # One cell beyond the porch: rounding cannot make a circle come and go at one instant.
-    x_min, y_min, x_max, y_max = grid.porch
-    edge = grid.width
-    if x < x_min - edge or x > x_max + edge or y < y_min - edge or y > y_max + edge:
-        circle.away = True
-        world.away.append(i)
-        return EVERYWHERE
-    if circle.side < DOWN:
-        circle.ix += 2 * circle.side - 1
-    else:
-        circle.iy += 2 * circle.side - 5
-    circle.cell = list_number(grid, circle.ix, circle.iy)
-    grid.members[circle.cell].append(i)
-    return circle.side
-
-
-def place_at(circle: Moving, time: float) -> tuple[float, float]:
+def place_at(circle: Record, time: float) -> tuple[Any, Any]:
     """Return where a circle is at a time, if nothing stops it."""
     past = time - circle.time
     return circle.x + circle.vx * past, circle.y + circle.vy * past
 
 
-def gather(world: World, circle: Moving, side: int) -> list[int]:
-    """Return the moving circles in reach of one, or those that have come into reach through a side."""
-    if circle.away:
-        return list(range(len(world.moving)))
-    grid = world.grid
-    members, cell, mask = grid.members, circle.cell, grid.mask
-    near: list[int] = []
-    for offset in grid.around[side]:
-        near += members[(cell + offset) & mask]
-    if world.away and not (0 <= circle.ix < grid.columns and 0 <= circle.iy < grid.rows):
-        near += world.away
-    return near
+# ------------------------------------------------------------------ lists
 
 
-def plan_cell(world: World, circle: Moving, now: float) -> None:
+def list_number(table: Record, column: int, row: int) -> int:
+    """Return the number of the list that a cell uses."""
+    number: int = (column + (row << table.bits)) & table.mask
+    return number
+
+
+def put(world: World, table: Record, cell: int, i: int) -> None:
+    """Append circle i to a list that has room."""
+    count = world.filled[table.first + cell]
+    world.slots[table.slot + table.room * cell + count] = i
+    world.filled[table.first + cell] = count + 1
+
+
+def take(world: World, table: Record, cell: int, i: int) -> None:
+    """Take circle i out of a list; the last one takes its place."""
+    slots = world.slots
+    left = world.filled[table.first + cell] - 1
+    world.filled[table.first + cell] = left
+    k = table.slot + table.room * cell
+    last = slots[k + left]
+    while slots[k] != i:
+        k += 1
+    slots[k] = last
+
+
+def has_room(world: World, table: Record, cell: int) -> bool:
+    """Return whether a list can take one more."""
+    room: bool = world.filled[table.first + cell] < table.room
+    return room
+
+
+# ------------------------------------------------------------------ from cell to cell
+
+
+def settle(world: World, i: int, x: float, y: float) -> bool:
+    """Enter circle i, which is in no list, in those of its place; False, and nothing changed, if one is full."""
+    circle = world.moving[i]
+    level = 0
+    while world.tables[level].width < 2.0 * circle.radius * (1.0 + CELL_MARGIN):
+        level += 1
+    own = world.tables[level]
+    column = math.floor((x - world.x0) / own.width)
+    row = math.floor((y - world.y0) / own.width)
+    cell = list_number(own, column, row)
+    room = has_room(world, own, cell)
+    for coarser in range(level + 1, world.levels):
+        guests = world.tables[world.levels + coarser]
+        up = guests.shift - own.shift
+        room = room and has_room(world, guests, list_number(guests, column >> up, row >> up))
+    if not room:
+        return False
+    circle.level = level
+    circle.column = column
+    circle.row = row
+    circle.cell = cell
+    put(world, own, cell, i)
+    for coarser in range(level + 1, world.levels):
+        guests = world.tables[world.levels + coarser]
+        up = guests.shift - own.shift
+        put(world, guests, list_number(guests, column >> up, row >> up), i)
+    return True
+
+
+def leave(world: World, i: int) -> None:
+    """Take circle i out of all its lists."""
+    circle = world.moving[i]
+    own = world.tables[circle.level]
+    take(world, own, circle.cell, i)
+    for coarser in range(circle.level + 1, world.levels):
+        guests = world.tables[world.levels + coarser]
+        up = guests.shift - own.shift
+        take(world, guests, list_number(guests, circle.column >> up, circle.row >> up), i)
+
+
+def cross(world: World, i: int, now: float) -> bool:
+    """Carry out the change of cell that circle i has planned; False, and nothing changed, if a list is full."""
+    circle = world.moving[i]
+    x, y = place_at(circle, now)
+    if circle.level == world.levels:
+        if not settle(world, i, x, y):
+            return False
+        come_back(world, i)
+    elif is_beyond(world, x, y):
+        go_away(world, i)
+    else:
+        return step_over(world, i)
+    circle.side = EVERYWHERE
+    return True
+
+
+def step_over(world: World, i: int) -> bool:
+    """Take circle i into the next cell on its own level, and where that is a new one on coarser levels."""
+    circle = world.moving[i]
+    own = world.tables[circle.level]
+    column = circle.column
+    row = circle.row
+    if circle.side < DOWN:
+        column += 2 * circle.side - 1
+    else:
+        row += 2 * circle.side - 5
+    cell = list_number(own, column, row)
+    room = has_room(world, own, cell)
+    for coarser in range(circle.level + 1, world.levels):
+        guests = world.tables[world.levels + coarser]
+        up = guests.shift - own.shift
+        if column >> up != circle.column >> up or row >> up != circle.row >> up:
+            room = room and has_room(world, guests, list_number(guests, column >> up, row >> up))
+    if not room:
+        return False
+    for coarser in range(circle.level + 1, world.levels):
+        guests = world.tables[world.levels + coarser]
+        up = guests.shift - own.shift
+        if column >> up != circle.column >> up or row >> up != circle.row >> up:
+            take(world, guests, list_number(guests, circle.column >> up, circle.row >> up), i)
+            put(world, guests, list_number(guests, column >> up, row >> up), i)
+    take(world, own, circle.cell, i)
+    put(world, own, cell, i)
+    circle.cell = cell
+    circle.column = column
+    circle.row = row
+    return True
+
+
+# ------------------------------------------------------------------ away
+
+
+def is_beyond(world: World, x: float, y: float) -> bool:
+    """Return whether a place is away: further than the porch by the edge, so that nobody comes and goes at once."""
+    edge = world.edge
+    return (
+        x < world.porch_x0 - edge
+        or x > world.porch_x1 + edge
+        or y < world.porch_y0 - edge
+        or y > world.porch_y1 + edge
+    )
+
+
+def go_away(world: World, i: int) -> None:
+    """Take circle i out of the grid."""
+    leave(world, i)
+    state = world.state[0]
+    world.away[state.away] = i
+    state.away += 1
+    world.moving[i].level = world.levels
+
+
+def come_back(world: World, i: int) -> None:
+    """Forget that circle i was away."""
+    state = world.state[0]
+    k = 0
+    while world.away[k] != i:
+        k += 1
+    state.away -= 1
+    world.away[k] = world.away[state.away]
+
+
+# ------------------------------------------------------------------ who is in reach
+
+
+def gather(world: World, circle: Record, side: int) -> int:
+    """
+    Write the moving circles in reach of one to `world.near`, or those that have come into reach through a side.
+
+    Returns
+    -------
+    int
+        How many.
+
+    """
+    if circle.level == world.levels:
+        return gather_everyone(world)
+    own = world.tables[circle.level]
+    count = gather_around(world, own, circle.cell, side, 0)
+    if circle.level > 0:
+        guests = world.tables[world.levels + circle.level]
+        count = gather_around(world, guests, circle.cell, side, count)
+    for coarser in range(circle.level + 1, world.levels):
+        table = world.tables[coarser]
+        up = table.shift - own.shift
+        if side == EVERYWHERE or is_border(circle, side, up):
+            cell = list_number(table, circle.column >> up, circle.row >> up)
+            count = gather_around(world, table, cell, side, count)
+    if world.state[0].away > 0 and is_on_porch(own, circle):
+        count = gather_away(world, count)
+    return count
+
+
+def gather_around(world: World, table: Record, cell: int, side: int, count: int) -> int:
+    """Append the lists of the nine cells around one, or of the three behind the side it was entered through."""
+    near = world.near
+    slots = world.slots
+    filled = world.filled
+    first = table.first
+    slot = table.slot
+    room = table.room
+    mask = table.mask
+    begin = table.around + 3 * side
+    end = begin + 3
+    if side == EVERYWHERE:
+        end = begin + 9
+    for k in range(begin, end):
+        number = (cell + world.around[k]) & mask
+        members = filled[first + number]
+        at = slot + room * number
+        # Most lists hold none, one or two: copying two always is quicker than asking.
+        near[count] = slots[at]
+        near[count + 1] = slots[at + 1]
+        for m in range(2, members):
+            near[count + m] = slots[at + m]
+        count += members
+    return count
+
+
+def gather_everyone(world: World) -> int:
+    """Write all moving circles to `world.near`."""
+    for k in range(len(world.moving)):
+        world.near[k] = k
+    return len(world.moving)
+
+
+def gather_away(world: World, count: int) -> int:
+    """Append the circles that are away."""
+    away: int = world.state[0].away
+    for k in range(away):
+        world.near[count + k] = world.away[k]
+    return count + away
+
+
+def is_on_porch(own: Record, circle: Record) -> bool:
+    """Return whether a circle in the grid is outside home."""
+    inside = 0 <= circle.column < own.columns and 0 <= circle.row < own.rows
+    return not inside
+
+
+def is_border(circle: Record, side: int, up: int) -> bool:
+    """Return whether the side through which a circle entered its cell is a border `up` doublings coarser too."""
+    line: int = circle.column
+    if side >= DOWN:
+        line = circle.row
+    return ((line + 1 - (side & 1)) & ((1 << up) - 1)) == 0
+
+
+# ------------------------------------------------------------------ when
+
+
+def plan_cell(world: World, circle: Record, now: float) -> None:
     """Find when a circle leaves its cell, and through which side; when it comes back, if it is away."""
     circle.time_of_cell = NEVER
-    if circle.away:
-        circle.time_of_cell = now + _wait_to_enter(world.grid.porch, circle, now)
+    if circle.level == world.levels:
+        circle.time_of_cell = now + wait_to_enter(world, circle, now)
         return
-    grid = world.grid
+    width = world.tables[circle.level].width
     if circle.vx != 0.0:
         ahead = 1 if circle.vx > 0.0 else 0
-        border = grid.x0 + grid.width * (circle.ix + ahead)
+        border = world.x0 + width * (circle.column + ahead)
         circle.time_of_cell = circle.time + (border - circle.x) / circle.vx
         circle.side = LEFT + ahead
     if circle.vy != 0.0:
         ahead = 1 if circle.vy > 0.0 else 0
-        border = grid.y0 + grid.width * (circle.iy + ahead)
+        border = world.y0 + width * (circle.row + ahead)
         time = circle.time + (border - circle.y) / circle.vy
         if time < circle.time_of_cell:
             circle.time_of_cell = time
             circle.side = DOWN + ahead
 
 
-def _wait_to_enter(
-    porch: tuple[float, float, float, float], circle: Moving, now: float
-) -> float:
+def wait_to_enter(world: World, circle: Record, now: float) -> float:
     """Return how long the straight path of a circle that is away takes to the porch."""
-    x_min, y_min, x_max, y_max = porch
     x, y = place_at(circle, now)
-    early, late = 0.0, NEVER
-    for place, speed, low, high in ((x, circle.vx, x_min, x_max), (y, circle.vy, y_min, y_max)):
-        if speed != 0.0:
-            first, last = (low - place) / speed, (high - place) / speed
-            early = max(early, min(first, last))
-            late = min(late, max(first, last))
-        elif place < low or place > high:
-            return NEVER
+    early = 0.0
+    late = NEVER
+    if circle.vx != 0.0:
+        a = (world.porch_x0 - x) / circle.vx
+        b = (world.porch_x1 - x) / circle.vx
+        early = max(early, min(a, b))
+        late = min(late, max(a, b))
+    elif x < world.porch_x0 or x > world.porch_x1:
+        return NEVER
+    if circle.vy != 0.0:
+        a = (world.porch_y0 - y) / circle.vy
+        b = (world.porch_y1 - y) / circle.vy
+        early = max(early, min(a, b))
+        late = min(late, max(a, b))
+    elif y < world.porch_y0 or y > world.porch_y1:
+        return NEVER
     return early if early < late else NEVER

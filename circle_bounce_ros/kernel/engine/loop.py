@@ -4,67 +4,84 @@ from __future__ import annotations
 
 import math
 
-from circle_bounce_ros.kernel.engine.bounce import bounce, move_to
+from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide, move_to
 from circle_bounce_ros.kernel.engine.grid import cross
-from circle_bounce_ros.kernel.engine.plan import plan
-from circle_bounce_ros.kernel.engine.records import CIRCLE, EVERYWHERE, NOTHING, World
+from circle_bounce_ros.kernel.engine.plan import plan, plan_later
+from circle_bounce_ros.kernel.engine.records import CIRCLE, EVERYWHERE, NOTHING, Record, World
 
 # Why `run` came back.
-DONE, BUDGET_SPENT, CLOCK_FULL, ENDLESS = 0, 1, 2, 3
+DONE, BUDGET_SPENT, LOG_FULL, LIST_FULL, ENDLESS = 0, 1, 2, 3, 4
 
 
-def run(world: World, until: float, at_most: float) -> int:
+def run(world: World, time: float, at_most: int) -> int:
     """
-    Carry out all events up to and including `until`, but `at_most` so many.
+    Carry out all events up to and including a time, but `at_most` so many.
 
     Returns
     -------
     int
-        DONE; BUDGET_SPENT; CLOCK_FULL: `set_clock_back` and call again; ENDLESS: contacts without
-        end at one instant, and nothing of the next one has been done.
+        DONE or BUDGET_SPENT; LOG_FULL or LIST_FULL: make room and call again; ENDLESS: contacts
+        without end at one instant. The next event has not been touched then.
 
     """
-    last = world.events + at_most
+    state = world.state[0]
+    last = state.events + at_most
+    until = time - state.epoch
     while world.tree_time[1] <= until:
-        if world.events >= last:
+        if state.events >= last:
             return BUDGET_SPENT
         i = world.tree_who[1]
         circle = world.moving[i]
-        now = max(world.tree_time[1], world.time)
-        side, partner = EVERYWHERE, -1
+        now = max(world.tree_time[1], state.time)
+        side = EVERYWHERE
+        partner = -1
         if circle.time_of_cell < circle.time_of_hit:
-            side = cross(world, i, now)
-        elif _is_contact(world, i):
+            if not cross(world, i, now):
+                return LIST_FULL
+            side = circle.side
+        elif is_contact(world, circle):
             if now >= world.span:
-                return CLOCK_FULL
-            if _is_endless(world, now):
+                set_clock_back(world, now)
+                until = time - state.epoch
+                continue
+            if state.keep_log and state.notes == len(world.log):
+                return LOG_FULL
+            if is_endless(world, now):
                 return ENDLESS
-            partner = bounce(world, i, now)
-        world.time = now
-        world.events += 1
-        plan(world, i, now, side)
-        if partner >= 0:
-            plan(world, partner, now, EVERYWHERE)
+            if circle.kind == CIRCLE:
+                partner = circle.partner
+                collide(world, i, partner, now)
+            else:
+                bounce_off(world, i, now)
+        state.time = now
+        state.events += 1
+        while i >= 0:  # plans for the circle and for the one it has hit
+            plan(world, i, now, side)
+            i = partner
+            partner = -1
     return DONE
 
 
-def _is_contact(world: World, i: int) -> bool:
+def is_contact(world: World, circle: Record) -> bool:
     """Return whether the plan still holds: a partner that has changed course makes it void."""
-    circle = world.moving[i]
+    holds: bool = circle.kind != NOTHING
     if circle.kind == CIRCLE:
-        return world.moving[circle.partner].changes == circle.partner_changes
-    return circle.kind != NOTHING
+        holds = world.moving[circle.partner].changes == circle.partner_changes
+    return holds
 
 
-def _is_endless(world: World, now: float) -> bool:
-    if now > world.crowd_ends:
-        world.crowd_ends = now + world.crowd_span
-        world.crowd = 0
-    world.crowd += 1
-    return world.crowd > world.patience
+def is_endless(world: World, now: float) -> bool:
+    """Count contacts that come too close upon each other."""
+    state = world.state[0]
+    if now > state.crowd_ends:
+        state.crowd_ends = now + world.crowd_span
+        state.crowd = 0
+    state.crowd += 1
+    endless: bool = state.crowd > world.patience
+    return endless
 
 
-def set_clock_back(world: World) -> None:
+def set_clock_back(world: World, now: float) -> None:
     """
     Set all clocks back by whole spans, so that digits do not wear out in long runs.
 
@@ -72,13 +89,13 @@ def set_clock_back(world: World) -> None:
     caller stops. All circles move to the new zero and plan afresh. The span is a power of two, so
     the epoch stays exact.
     """
-    back = math.floor(world.tree_time[1] / world.span) * world.span
-    world.epoch += back
-    for circle in world.moving:
-        move_to(circle, back)
-        circle.time = 0.0
-    world.time = max(world.time - back, 0.0)
-    world.crowd_ends -= back
+    state = world.state[0]
+    back = math.floor(now / world.span) * world.span
+    state.epoch += back
+    state.time = max(state.time - back, 0.0)
+    state.crowd_ends -= back
     # A cell that was entered between the new zero and now stays: nothing changes course in between.
     for i in range(len(world.moving)):
-        plan(world, i, 0.0, EVERYWHERE)
+        move_to(world.moving[i], back)
+        world.moving[i].time = 0.0
+        plan_later(world, i, state.time)

@@ -7,16 +7,16 @@ never from the moment of looking. So neither the grid nor the order of looking c
 
 from __future__ import annotations
 
-from circle_bounce_ros.kernel.engine import tournament
 from circle_bounce_ros.kernel.engine.grid import gather, plan_cell
 from circle_bounce_ros.kernel.engine.records import (
     CIRCLE,
     EVERYWHERE,
     NOTHING,
     WALL,
-    Moving,
+    Record,
     World,
 )
+from circle_bounce_ros.kernel.engine.tournament import enter
 from circle_bounce_ros.kernel.impact import NEVER, time_to_touch_xy, time_to_wall_xy
 
 
@@ -31,62 +31,84 @@ def plan(world: World, i: int, now: float, side: int) -> None:
     if side == EVERYWHERE:
         circle.time_of_hit = NEVER
         circle.kind = NOTHING
-    if world.collide:
-        _plan_circles(world, circle, now, side)
-    if not circle.away:
-        _plan_locked(world, circle, now)
+    plan_circles(world, circle, side)
+    if circle.level < world.levels:
+        plan_locked(world, circle)
+    circle.time_of_hit = max(circle.time_of_hit, now)  # rounding must not turn time back
     plan_cell(world, circle, now)
-    tournament.enter(world, i, min(circle.time_of_hit, circle.time_of_cell))
+    enter(world, i, min(circle.time_of_hit, circle.time_of_cell))
 
 
-def _plan_circles(world: World, circle: Moving, now: float, side: int) -> None:
+def plan_later(world: World, i: int, now: float) -> None:
+    """Let the loop plan for circle i first thing."""
+    circle = world.moving[i]
+    circle.time_of_hit = now
+    circle.time_of_cell = NEVER
+    circle.kind = NOTHING
+    enter(world, i, now)
+
+
+def plan_circles(world: World, circle: Record, side: int) -> None:
+    """Find the soonest touch of another moving circle, if it is sooner than what is planned."""
     moving = world.moving
+    near = world.near
     best = circle.time_of_hit
-    x, y, vx, vy = circle.x, circle.y, circle.vx, circle.vy
-    time, radius = circle.time, circle.radius
-    for j in gather(world, circle, side):
-        other = moving[j]
-        # Both at the later of their two times; the circle itself has no relative velocity: never.
-        past = time - other.time
-        if past >= 0.0:
-            since = time
-            dx = x - (other.x + other.vx * past)
-            dy = y - (other.y + other.vy * past)
-        else:
-            since = other.time
-            dx = (x - vx * past) - other.x
-            dy = (y - vy * past) - other.y
-        wait = time_to_touch_xy(
-            dx, dy, vx - other.vx, vy - other.vy, radius + other.radius, best - since
-        )
-        if since + wait < best:
-            best = since + wait
-            circle.kind = CIRCLE
-            circle.partner = j
-            circle.partner_changes = other.changes
-    if best < circle.time_of_hit:
-        circle.time_of_hit = max(best, now)
+    x = circle.x
+    y = circle.y
+    vx = circle.vx
+    vy = circle.vy
+    time = circle.time
+    radius = circle.radius
+    partner = -1
+    for k in range(gather(world, circle, side)):
+        other = moving[near[k]]
+        # Both at the later of their two times. The circle itself has no relative velocity: never.
+        since = max(time, other.time)
+        mine = since - time
+        past = since - other.time
+        ux = other.vx
+        uy = other.vy
+        dx = (x + vx * mine) - (other.x + ux * past)
+        dy = (y + vy * mine) - (other.y + uy * past)
+        reach = radius + other.radius
+        due = since + time_to_touch_xy(dx, dy, vx - ux, vy - uy, reach, best - since)
+        if due < best:
+            best = due
+            partner = near[k]
+    if partner >= 0:
+        circle.time_of_hit = best
+        circle.kind = CIRCLE
+        circle.partner = partner
+        circle.partner_changes = moving[partner].changes
 
 
-def _plan_locked(world: World, circle: Moving, now: float) -> None:
+def plan_locked(world: World, circle: Record) -> None:
+    """Find the soonest touch of something locked in reach of the cell, if it is sooner than what is planned."""
     best = circle.time_of_hit
-    x, y, vx, vy = circle.x, circle.y, circle.vx, circle.vy
-    time, radius = circle.time, circle.radius
-    for number in world.grid.locked[circle.cell]:
-        locked = world.locked[number]
-        dx, dy, reach = x - locked.x, y - locked.y, radius + locked.radius
-        wait = time_to_touch_xy(dx, dy, vx, vy, reach, best - time)
-        if time + wait < best:
-            best = time + wait
-            circle.kind = locked.kind
+    x = circle.x
+    y = circle.y
+    vx = circle.vx
+    vy = circle.vy
+    time = circle.time
+    radius = circle.radius
+    cell = world.cells[world.tables[circle.level].first + circle.cell]
+    for k in range(cell.first_post, cell.end_post):
+        number = world.post_numbers[k]
+        post = world.posts[number]
+        reach = radius + post.radius
+        due = time + time_to_touch_xy(x - post.x, y - post.y, vx, vy, reach, best - time)
+        if due < best:
+            best = due
+            circle.kind = post.kind
             circle.partner = number
-    for number in world.grid.flats[circle.cell]:
+    for k in range(cell.first_flat, cell.end_flat):
+        number = world.flat_numbers[k]
         flat = world.flats[number]
-        dx, dy = x - flat.x, y - flat.y
-        wait = time_to_wall_xy(dx, dy, vx, vy, radius, flat.nx, flat.ny, flat.length)
-        if time + wait < best:
-            best = time + wait
+        due = time + time_to_wall_xy(
+            x - flat.x, y - flat.y, vx, vy, radius, flat.nx, flat.ny, flat.length
+        )
+        if due < best:
+            best = due
             circle.kind = WALL
             circle.partner = number
-    if best < circle.time_of_hit:
-        circle.time_of_hit = max(best, now)
+    circle.time_of_hit = best

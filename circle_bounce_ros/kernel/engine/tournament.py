@@ -2,7 +2,8 @@
 Whose plan is the earliest: a tournament among all moving circles.
 
 A binary tree in two lists. Leaf `world.leaf + i` is circle i with the time of its plan; each inner node holds
-the smaller of its two children's times and whose it is; node 1 is the winner. Equal times: the lower index.
+the smaller of its two children's times and whose it is; node 1 is the winner. Of equal
+times that of the later match goes first: always the same in the same run.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ def enter(world: World, i: int, time: float) -> None:
     who = world.tree_who
     node = world.leaf + i
     times[node] = time
-    who[node] = i
-    best = i
     while node > 1:
-        rival = node ^ 1
-        # The left one of the two wins a draw.
-        if times[rival] < time or (times[rival] == time and rival < node):
-            time = times[rival]
-            best = who[rival]
+        rival = times[node ^ 1]
+        # The winner's number is read after the match, not in it: that compiles to a conditional move.
+        winner = node
+        if rival < time:
+            time = rival
+            winner = node ^ 1
+        best = who[winner]
         node >>= 1
         times[node] = time
         who[node] = best

@@ -1,0 +1,96 @@
+"""
+The engine's functions, compiled by numba as they stand, and kept on disk for the next start.
+
+Each function is cloned with globals in which the functions that it calls are compiled clones themselves: the
+source knows nothing of numba. All but the entries are inlined by force, and reference counting is switched off:
+without either every access to an array inside the world would be counted, at four times the cost.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+KERNEL = Path(__file__).resolve().parents[1]
+PACKAGE = 'circle_bounce_ros.kernel'
+
+Function = Callable[..., Any]
+
+
+def is_available() -> bool:
+    """Return whether numba is installed, without the time that it takes to import it."""
+    return find_spec('numba') is not None
+
+
+def compile_entries(*entries: Function) -> list[Function]:
+    """Return compiled twins of functions, which call compiled twins of all that they call."""
+    import numba
+
+    twins: dict[Function, Any] = {}
+    previous = numba.config.CACHE_DIR
+    folder = cache_directory()
+    numba.config.CACHE_DIR = str(folder or '')
+    try:
+        options = {'cache': True} if folder else {}
+        return [_twin(entry, twins, options) for entry in entries]
+    finally:
+        numba.config.CACHE_DIR = previous
+
+
+def _twin(function: Function, twins: dict[Function, Any], options: dict[str, Any]) -> Any:
+    if function in twins:
+        return twins[function]
+    assert isinstance(function, FunctionType)
+    # Inlined by force, and never called from Python: no wrappers for that, which halves the time to compile.
+    inlined = {'forceinline': True, 'no_cpython_wrapper': True, 'no_cfunc_wrapper': True}
+    names = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        used = names.get(name)
+        if isinstance(used, FunctionType) and used.__module__.startswith(PACKAGE):
+            names[name] = _twin(used, twins, inlined)
+    twin = FunctionType(function.__code__, names, function.__name__, function.__defaults__)
+    twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
+    twins[function] = _njit(twin, options)
+    return twins[function]
+
+
+def _njit(function: Function, options: dict[str, Any]) -> Any:
+    import numba
+
+    common = {'error_model': 'numpy', 'nogil': True, **options}
+    try:
+        return numba.njit(_nrt=False, **common)(function)
+    except KeyError:  # a numba without this option, which is not part of its public face
+        return numba.njit(**common)(function)
+
+
+def cache_directory() -> Path | None:
+    """
+    Return where compiled code is kept: a folder for this very source, numba and Python; None if nowhere.
+
+    Numba itself looks at the file of each function only, not at those of the functions it calls. The
+    package's own folder may be read-only, and is not touched.
+    """
+    import numba
+
+    digest = hashlib.sha256(f'{numba.__version__} {sys.version}'.encode())
+    for file in sorted(KERNEL.rglob('*.py')):
+        digest.update(file.read_bytes())
+    user = os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache'
+    temporary = Path(tempfile.gettempdir()) / f'circle_bounce_ros_{os.getuid()}'
+    for base in (Path(user) / 'circle_bounce_ros', temporary):
+        folder = base / digest.hexdigest()[:16]
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            continue
+        if os.access(folder, os.W_OK):
+            return folder
+    return None

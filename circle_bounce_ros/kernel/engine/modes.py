@@ -1,0 +1,109 @@
+"""
+Two ways to run the same functions: as they stand, or compiled by numba where it is installed.
+
+Compiled code works on numpy's records. Plain Python is several times faster on small objects with the same fields
+and on lists, and for a handful of circles faster than a call into compiled code. Both give the same bits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from circle_bounce_ros.kernel.engine import compilation, records
+from circle_bounce_ros.kernel.engine.alone import run_alone
+from circle_bounce_ros.kernel.engine.loop import run
+from circle_bounce_ros.kernel.engine.records import World
+
+# For so few moving circles plain code is the faster one.
+FEW = 4
+
+
+class Mode(NamedTuple):
+    """The engine's entries, and whether they take a world of arrays or one of objects."""
+
+    run: Callable[[World, float, int], int]
+    run_alone: Callable[[World, float], int]
+    takes_arrays: bool
+
+
+PLAIN = Mode(run, run_alone, takes_arrays=False)
+
+
+@lru_cache(maxsize=1)
+def compiled() -> Mode:
+    """
+    Return the compiled mode; each entry is compiled when it is first called, or read from the cache.
+
+    Raises
+    ------
+    ImportError
+        Where numba is not installed.
+
+    """
+    together, alone = compilation.compile_entries(run, run_alone)
+    return Mode(together, alone, takes_arrays=True)
+
+
+def choose(count: int, wanted: bool | None) -> Mode:
+    """Return the mode for so many moving circles; `wanted` None: the faster one that there is."""
+    if wanted is None:
+        wanted = count > FEW and compilation.is_available()
+    return compiled() if wanted else PLAIN
+
+
+# ------------------------------------------------------------------ worlds of objects
+
+
+def to_objects(world: World) -> World:
+    """Return a world of arrays as one of objects and lists."""
+    parts = (_to_list(part) if isinstance(part, np.ndarray) else part for part in world)
+    return cast(World, _PlainWorld(*parts))
+
+
+def to_arrays(world: World, like: World) -> World:
+    """Return a world of objects and lists as one of arrays; `like` tells their types."""
+    parts = []
+    for name in World._fields:
+        part, model = getattr(world, name), getattr(like, name)
+        if isinstance(model, np.ndarray):
+            if model.dtype.names is not None:
+                part = [tuple(getattr(row, field) for field in model.dtype.names) for row in part]
+            part = np.array(part, model.dtype)
+        parts.append(part)
+    return World(*parts)
+
+
+def columns(array: NDArray[Any]) -> Any:
+    """Return the fields of a record array as attributes: (n,) views."""
+    return SimpleNamespace(**{name: array[name] for name in array.dtype.names or ()})
+
+
+def _to_list(array: NDArray[Any]) -> list[Any]:
+    """Return a list of objects with the fields of a record array, or of plain numbers."""
+    if array.dtype.names is None:
+        return cast(list[Any], array.tolist())
+    kind = _KINDS[array.dtype.names]
+    return [kind(*row) for row in array.tolist()]
+
+
+def _slotted(name: str, fields: tuple[str, ...]) -> type:
+    """Return a class of objects that have just these attributes and are made from them in this order."""
+
+    def __init__(self: Any, *values: Any) -> None:  # noqa: N807 - it becomes the method
+        for field, value in zip(fields, values, strict=True):
+            setattr(self, field, value)
+
+    return type(name, (), {'__slots__': fields, '__init__': __init__})
+
+
+_KINDS = {
+    cast(tuple[str, ...], layout.names): _slotted(name, cast(tuple[str, ...], layout.names))
+    for name, layout in records.LAYOUTS.items()
+}
+_PlainWorld = _slotted('PlainWorld', World._fields)
