@@ -119,7 +119,7 @@ def _text(data: bytes) -> str:
     return text
 
 
-def _document(events: Iterator[yaml.Event]) -> Any:
+def _document(events: Iterator[Any]) -> Any:
     next(events)  # the stream's start
     if isinstance(next(events), yaml.StreamEndEvent):
         raise SceneError('', 'must have circles or groups, got an empty file')
@@ -131,7 +131,7 @@ def _document(events: Iterator[yaml.Event]) -> Any:
     return value
 
 
-def _node(event: yaml.Event, events: Iterator[yaml.Event], place: str, depth: int) -> Any:
+def _node(event: Any, events: Iterator[Any], place: str, depth: int) -> Any:
     if isinstance(event, yaml.AliasEvent):
         raise SceneError(place, f'must be written out, got the alias {shown(f"*{event.anchor}")}')
     if event.anchor is not None:
@@ -147,14 +147,14 @@ def _node(event: yaml.Event, events: Iterator[yaml.Event], place: str, depth: in
     return _mapping(events, place, depth + 1)
 
 
-def _sequence(events: Iterator[yaml.Event], place: str, depth: int) -> list[Any]:
+def _sequence(events: Iterator[Any], place: str, depth: int) -> list[Any]:
     items: list[Any] = []
     while not isinstance(event := next(events), yaml.SequenceEndEvent):
         items.append(_node(event, events, inside(place, len(items)), depth))
     return items
 
 
-def _mapping(events: Iterator[yaml.Event], place: str, depth: int) -> dict[str, Any]:
+def _mapping(events: Iterator[Any], place: str, depth: int) -> dict[str, Any]:
     items: dict[str, Any] = {}
     while not isinstance(event := next(events), yaml.MappingEndEvent):
         if not isinstance(event, yaml.ScalarEvent):
