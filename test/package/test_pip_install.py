@@ -45,5 +45,12 @@ def test_the_console_scripts_are_on_the_path(installed, tmp_path):
     run(folder / 'bin/bounce_check', tree / 'config/scenes/lesson.yaml', cwd=tmp_path)
 
 
+def test_ament_finds_a_package_that_pip_has_installed(installed):
+    how, folder, _ = installed
+    marker = folder / 'share/ament_index/resource_index/packages' / PACKAGE
+    # colcon would write a missing one by itself, so this is where it shows; an editable install has no data files.
+    assert marker.is_file() == (how == 'normal')
+
+
 def test_a_source_tree_finds_its_files(source_tree):
     assert run(sys.executable, '-c', WHERE, cwd=source_tree).strip() == str(source_tree)
