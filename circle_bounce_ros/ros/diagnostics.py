@@ -20,7 +20,8 @@ DIAGNOSTICS = Topic('/diagnostics', DiagnosticArray)
 ENOUGH = 0.9
 
 # Measured over less, a real-time factor says more about one tick than about the machine.
-MEASURED_OVER = SECOND // 2  # ns
+LEAST_TIME = SECOND // 2  # ns
+LEAST_TICKS = 10
 
 # A tick is late when it comes after so many periods.
 LATE = 1.5
@@ -101,7 +102,7 @@ class Diagnostics:
         self._contacts_then = (steady_ns, contact_count)
         self._contacts_per_second = (contact_count - count) * SECOND / (steady_ns - then)
         self._dropped_before, self._dropped = self._dropped, Fraction(0)
-        if self._progress.passed_ns >= MEASURED_OVER:
+        if self._progress.passed_ns >= max(LEAST_TIME, LEAST_TICKS * self._period_ns):
             self._real_time_factor = self._progress.real_time_factor
             self._progress = Progress()
         elif self._progress.passed_ns == 0 and self._period_ns < SECOND:

@@ -43,7 +43,10 @@ def test_services_answer_within_a_second_and_diagnostics_warn(
         'a warning',
     )
     values = {value.key: value.value for value in diagnostics[-1].status[0].values}
-    assert float(values['dropped scene time (s)']) > 0
+    if publish_clock == 'true':  # simulated time is slow then, and whole
+        assert float(values['dropped scene time (s)']) == 0.0
+    else:
+        assert float(values['dropped scene time (s)']) > 0.0
     answers = [
         observer.reset,
         observer.pause,
