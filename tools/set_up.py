@@ -38,7 +38,7 @@ print(json.dumps({
 def packages(environment, ros_sourced):
     """Return what pip has to install into an environment."""
     if environment == '.venv':
-        extras = 'test,check,docs' if ros_sourced else 'ros,test,check,docs'
+        extras = 'fast,test,check,docs' if ros_sourced else 'ros,fast,test,check,docs'
         return ['--editable', '.[{}]'.format(extras)]
     if environment == '.venvs/kernel':
         return ['numpy', 'pytest']
