@@ -47,6 +47,8 @@ setup(
             'ruff==0.17.6',
             'mypy==2.4.1',
             'import-linter==2.15',
+            'types-PyYAML',
+            'types-jsonschema',
         ],
         'docs': ['matplotlib>=3.8'],
     },
