@@ -51,10 +51,23 @@ setup(
             'types-jsonschema',
         ],
         'docs': ['matplotlib>=3.8'],
+        # Recordings, pictures and data sets: all that offline/ needs, on any system.
+        'offline': [
+            'rosbags>=0.11.9',
+            'mcap>=1.2',
+            'pyarrow>=16',
+            'tqdm>=4.66',
+            'dask[distributed]>=2024.5',
+            'matplotlib>=3.8',
+            'pillow>=10.1',
+        ],
     },
     entry_points={
         'console_scripts': [
             'bounce_node = circle_bounce_ros.ros.node:main',
+            'bounce_record = circle_bounce_ros.offline.commands:record_main',
+            'bounce_plot = circle_bounce_ros.offline.commands:plot_main',
+            'bounce_sweep = circle_bounce_ros.offline.commands:sweep_main',
             'bounce_check = circle_bounce_ros.scene_file.check:check_main',
         ],
     },
