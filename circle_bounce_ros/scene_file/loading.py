@@ -53,7 +53,7 @@ def load_scene(path_or_name: str | os.PathLike[str], seed: int | None = None) ->
         raise SceneError(place, error.problem) from None
 
 
-def read_scene(path_or_name: str | os.PathLike[str]) -> dict[str, Any]:
+def read_scene(path_or_name: str | os.PathLike[str]) -> Any:
     """
     Return what a scene file says, as plain data that has not been checked.
 
