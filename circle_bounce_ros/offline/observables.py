@@ -26,8 +26,11 @@ from circle_bounce_ros.kernel import ContactKind, Scene, Simulation
 MARGIN = 10.0
 LARGEST_MARGIN = 0.25
 
-# Displacements are compared at these times, in mean free times: beyond the free flight.
-LAGS = (4.0, 12.0)
+# Displacements are compared at these times, in mean free times: beyond the free flight, and before most
+# circles have come to a wall from where they began.
+LAGS = (3.0, 6.0)
+# How far from a wall they begin, as a part of the shorter side.
+DEEP = 0.3
 
 # Column, unit and meaning of a row of the summary.
 COLUMNS: dict[str, tuple[str, str]] = {
@@ -66,15 +69,35 @@ class Window(NamedTuple):
 
 def bulk(scene: Scene) -> Window | None:
     """Return the window of a scene, None where there is no bulk: without walls, or with locked circles."""
-    if not scene.walls or any(circle.locked for circle in scene.circles):
+    if any(circle.locked for circle in scene.circles):
+        return None
+    radius = max(circle.radius for circle in scene.circles)
+    return inside_walls(scene, MARGIN * radius, LARGEST_MARGIN)
+
+
+def inside_walls(scene: Scene, margin: float, part: float) -> Window | None:
+    """
+    Return the box around all walls without its rim; None where walls make no box.
+
+    Parameters
+    ----------
+    scene : Scene
+    margin : float, m
+        Width of the rim ...
+    part : float
+        ... and how much of the shorter side it is at most.
+
+    """
+    if not scene.walls:
         return None
     ends = np.array([end for wall in scene.walls for end in (wall.start, wall.end)])
     low, high = ends.min(axis=0), ends.max(axis=0)
-    radius = max(circle.radius for circle in scene.circles)
-    margin = min(MARGIN * radius, LARGEST_MARGIN * float((high - low).min()))
-    if not margin > 0.0:
+    rim = min(margin, part * float((high - low).min()))
+    if not rim > 0.0:
         return None
-    return Window(tuple((low + margin).tolist()), tuple((high - margin).tolist()))
+    left, bottom = (low + rim).tolist()
+    right, top = (high - rim).tolist()
+    return Window((left, bottom), (right, top))
 
 
 def open_border(scene: Scene) -> float | None:
@@ -156,7 +179,8 @@ class Observables:
     def _start_spreading(self, step: float, positions: NDArray[np.float64]) -> Spreading:
         began = self._began or 0.0
         free = began * len(positions) / self._warm_contacts if self._warm_contacts else math.inf
-        return Spreading(step, free, self._window)
+        deep = inside_walls(self._simulation.scene, math.inf, DEEP)
+        return Spreading(step, free, deep)
 
     def _count(self, contacts: NDArray[np.void]) -> None:
         for kind in ContactKind:
