@@ -7,7 +7,8 @@ each contact of two circles there, whose centres are s apart,
 
     P A = N kT + sum(s J) / (2 T)        Z = P A / (N kT)
 
-over a time T in a window of area A, where kT is the mean kinetic energy of a circle in two dimensions.
+over a time T in a window of area A. NkT is the kinetic energy in the window, on average: heat spreads slowly, so
+that the window may be warmer than the whole for seconds.
 """
 
 from __future__ import annotations
@@ -146,6 +147,7 @@ class Observables:
         self._way = 0.0  # m/s, sum of the mean speeds of all samples
         self._inside = 0.0  # circles, summed over samples
         self._covered = 0.0  # m^2 of circles, summed over samples
+        self._warmth = 0.0  # J, kinetic energy inside, summed over samples
         self._kinds = dict.fromkeys(ContactKind, 0)
         self._virial = 0.0
         self._on_walls = 0.0
@@ -202,6 +204,8 @@ class Observables:
             inside = self._window.holds(positions[:, 0], positions[:, 1])
             self._inside += float(inside.sum())
             self._covered += math.pi * float(np.square(self._simulation.radii[inside]).sum())
+            squares = np.square(velocities[inside]).sum(axis=1)
+            self._warmth += 0.5 * float(self._simulation.masses[inside] @ squares)
 
     def row(self) -> dict[str, Any]:
         """Return the row: numbers by the names of `COLUMNS`, None for what this scene does not say."""
@@ -209,7 +213,7 @@ class Observables:
         measured = self._now - (self._began or 0.0)
         row: dict[str, Any] = dict.fromkeys(COLUMNS)
         row |= {'measured': measured, 'circles': count, 'energy_error': self._energy_error}
-        row['temperature'] = temperature = self._energy / count
+        row['temperature'] = self._energy / count
         if not self._samples or not measured > 0.0:
             return row
         total = sum(self._kinds.values())
@@ -222,8 +226,7 @@ class Observables:
         if self._border:
             row['pressure_walls'] = self._on_walls / (measured * self._border)
         if self._window and self._inside:
-            inside = self._inside / self._samples
-            kinetic = inside * temperature
+            kinetic = self._warmth / self._samples
             all_of_it = kinetic + 0.5 * self._virial / measured
             row['packing'] = self._covered / self._samples / self._window.area
             row['pressure'] = all_of_it / self._window.area

@@ -40,6 +40,8 @@ AHEAD = 4
 DEATHS = 10
 # How often to look whether to stop.
 PATIENCE = 0.5  # s
+# How long a scheduler may take to answer.
+CONNECTING = '10s'
 
 
 class SweepError(ValueError):
@@ -171,7 +173,7 @@ def connect(chosen: argparse.Namespace, runs: int) -> Iterator[Any]:
     with dask.config.set(settings):
         if chosen.scheduler:
             try:
-                client = Client(chosen.scheduler, timeout='10s')
+                client = Client(chosen.scheduler, timeout=CONNECTING)
             except (OSError, ValueError) as error:
                 raise SweepError(
                     f'scheduler: must be one that answers, got {chosen.scheduler}: {error}'
