@@ -38,7 +38,7 @@ print(json.dumps({
 def packages(environment, ros_sourced):
     """Return what pip has to install into an environment."""
     if environment == '.venv':
-        extras = 'test,check,docs' if ros_sourced else 'ros,test,check,docs'
+        extras = 'fast,test,check,docs' if ros_sourced else 'ros,fast,test,check,docs'
         return ['--editable', '.[{}]'.format(extras)]
     if environment == '.venvs/kernel':
         return ['numpy', 'pytest']
@@ -207,6 +207,9 @@ def make(environment, key, python, ros_sourced):
     run([python['executable'], '-m', 'venv'] + sites + [str(folder)])
     pip = [str(folder / 'bin/python'), '-m', 'pip', '--disable-pip-version-check']
     run(pip + ['install', '--quiet', '--use-pep517'] + packages(environment, ros_sourced))
+    if environment == '.venv':
+        compile_ahead = 'from circle_bounce_ros.kernel import compile_ahead; compile_ahead()'
+        run([str(folder / 'bin/python'), '-c', compile_ahead])
     base = os.path.realpath(str(folder / 'bin/python'))
     finished = stamp.with_suffix('.new')
     finished.write_text(json.dumps({'key': key, 'base': base, 'python': python['executable']}))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import signal
+import subprocess
 from itertools import pairwise
 
 import pytest
@@ -32,11 +34,14 @@ def test_ctrl_c_and_sigterm_end_it_with_status_0_and_no_traceback(
     assert 'rror' not in node.log
 
 
-def test_a_second_ctrl_c_does_not_disturb_the_end(start, observer, lesson, green):
+@pytest.mark.parametrize('how', [signal.SIGINT, signal.SIGTERM])
+def test_a_second_signal_does_not_disturb_the_end(start, observer, lesson, green, how):
     node = start(scene=lesson, rate=1000.0)
     observer.collect(green[1], 10)
-    for _ in range(100):
-        node.process.send_signal(signal.SIGINT)
+    while node.process.poll() is None:
+        node.process.send_signal(how)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            node.process.wait(timeout=0.001)
     assert node.wait() == 0
     assert 'Traceback' not in node.log
 

@@ -13,6 +13,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Callable
+from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -46,8 +47,7 @@ def say_ready() -> None:
 
 def compile_entries(*entries: Function) -> list[Function]:
     """Return compiled twins of functions, which call compiled twins of all that they call."""
-    import numba
-
+    numba: Any = import_module('numba')
     twins: dict[Function, Any] = {}
     previous = numba.config.CACHE_DIR
     folder = cache_directory()
@@ -77,8 +77,7 @@ def _twin(function: Function, twins: dict[Function, Any], options: dict[str, Any
 
 
 def _njit(function: Function, options: dict[str, Any]) -> Any:
-    import numba
-
+    numba: Any = import_module('numba')
     common = {'error_model': 'numpy', 'nogil': True, **options}
     try:
         return numba.njit(_nrt=False, **common)(function)
