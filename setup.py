@@ -43,7 +43,7 @@ setup(
         ],
         # Compiles the engine, some fifty times faster; everything works without it.
         'fast': ['numba>=0.60'],
-        'test': ['pytest>=8', 'pytest-cov>=5', 'hypothesis>=6.100'],
+        'test': ['pytest>=8', 'pytest-cov>=5', 'hypothesis>=6.100', 'mcap-ros2-support>=0.5'],
         # Exact, because a new release of any of these finds new faults in the same code.
         'check': [
             'ruff==0.17.6',
@@ -63,6 +63,7 @@ setup(
             'matplotlib>=3.8',
             'pillow>=10.1',
         ],
+        'test-offline': ['pytest>=8', 'mcap-ros2-support>=0.5'],
     },
     entry_points={
         'console_scripts': [
