@@ -16,7 +16,7 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
 .PHONY: help set-up run listen reset pause resume step set check clean distclean
-.PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-rest
+.PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest
 .NOTPARALLEL:
 
 help:
@@ -31,10 +31,10 @@ help:
 	@echo 'make distclean  remove the environments too'
 	@echo 'Each takes PYTHON=..., the Python 3.10-3.13 to use, for example make PYTHON=python3.12 run'
 
-set-up: .venv .venvs/kernel .venvs/colcon
+set-up: .venv .venvs/kernel .venvs/offline .venvs/colcon
 
-.PHONY: .venv .venvs/kernel .venvs/colcon
-.venv .venvs/kernel .venvs/colcon:
+.PHONY: .venv .venvs/kernel .venvs/offline .venvs/colcon
+.venv .venvs/kernel .venvs/offline .venvs/colcon:
 	$(SET_UP) $@
 
 define NOTICE
@@ -69,7 +69,7 @@ check: .venv
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: set-up check test-kernel test-compiled-kernel test-bare-kernel test-rest
+test: set-up check test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest
 	@echo 'make test: PASSED'
 
 # Branch coverage of the plain engine, measured by the kernel's own tests.
@@ -83,8 +83,12 @@ test-compiled-kernel: .venv
 test-bare-kernel: .venvs/kernel
 	env -u PYTHONPATH .venvs/kernel/bin/python -m pytest test/kernel
 
+# Where there is no ROS: recordings, pictures and sweeps need none.
+test-offline: .venvs/offline
+	env -u PYTHONPATH .venvs/offline/bin/python -m pytest test/offline
+
 test-rest: .venv .venvs/kernel .venvs/colcon
-	$(BIN)/python -m pytest --ignore=test/kernel
+	$(BIN)/python -m pytest --ignore=test/kernel --ignore=test/offline
 
 clean:
 	rm -rf build install log out .coverage .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -43,7 +43,7 @@ setup(
         ],
         # Compiles the engine, some fifty times faster; everything works without it.
         'fast': ['numba>=0.60'],
-        'test': ['pytest>=8', 'pytest-cov>=5', 'hypothesis>=6.100'],
+        'test': ['pytest>=8', 'pytest-cov>=5', 'hypothesis>=6.100', 'mcap-ros2-support>=0.5'],
         # Exact, because a new release of any of these finds new faults in the same code.
         'check': [
             'ruff==0.17.6',
@@ -53,10 +53,24 @@ setup(
             'types-jsonschema',
         ],
         'docs': ['matplotlib>=3.8'],
+        # Recordings, pictures and data sets: all that offline/ needs, on any system.
+        'offline': [
+            'rosbags>=0.11.9',
+            'mcap>=1.2',
+            'pyarrow>=16',
+            'tqdm>=4.66',
+            'dask[distributed]>=2024.5',
+            'matplotlib>=3.8',
+            'pillow>=10.1',
+        ],
+        'test-offline': ['pytest>=8', 'mcap-ros2-support>=0.5'],
     },
     entry_points={
         'console_scripts': [
             'bounce_node = circle_bounce_ros.ros.node:main',
+            'bounce_record = circle_bounce_ros.offline.commands:record_main',
+            'bounce_plot = circle_bounce_ros.offline.commands:plot_main',
+            'bounce_sweep = circle_bounce_ros.offline.commands:sweep_main',
             'bounce_check = circle_bounce_ros.scene_file.check:check_main',
         ],
     },

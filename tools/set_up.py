@@ -38,8 +38,10 @@ print(json.dumps({
 def packages(environment, ros_sourced):
     """Return what pip has to install into an environment."""
     if environment == '.venv':
-        extras = 'fast,test,check,docs' if ros_sourced else 'ros,fast,test,check,docs'
-        return ['--editable', '.[{}]'.format(extras)]
+        extras = 'fast,test,check,docs,offline'
+        return ['--editable', '.[{}]'.format(extras if ros_sourced else 'ros,' + extras)]
+    if environment == '.venvs/offline':
+        return ['--editable', '.[fast,offline,test-offline]']
     if environment == '.venvs/kernel':
         return ['numpy', 'pytest']
     if environment == '.venvs/colcon':
@@ -202,12 +204,13 @@ def make(environment, key, python, ros_sourced):
         folder.rename(removed)
     begun.rename(folder)
     shutil.rmtree(str(removed), ignore_errors=True)
-    # A sourced ROS builds on the system's packages. The kernel's environment must have none of them.
-    sites = ['--system-site-packages'] if ros_sourced and environment != '.venvs/kernel' else []
+    # A sourced ROS builds on the system's packages. What is to work without ROS must have none of them.
+    bare = environment in ('.venvs/kernel', '.venvs/offline')
+    sites = ['--system-site-packages'] if ros_sourced and not bare else []
     run([python['executable'], '-m', 'venv'] + sites + [str(folder)])
     pip = [str(folder / 'bin/python'), '-m', 'pip', '--disable-pip-version-check']
     run(pip + ['install', '--quiet', '--use-pep517'] + packages(environment, ros_sourced))
-    if environment == '.venv':
+    if environment in ('.venv', '.venvs/offline'):
         compile_ahead = 'from circle_bounce_ros.kernel import compile_ahead; compile_ahead()'
         run([str(folder / 'bin/python'), '-c', compile_ahead])
     base = os.path.realpath(str(folder / 'bin/python'))

@@ -8,6 +8,12 @@ from circle_bounce_ros.encoding.layout import UINT32, Layout, Slot
 
 SECOND = 10**9  # ns
 END_OF_TIME = 2**31 * SECOND  # seconds are int32
+SECONDS_PER_NS = 1e-9
+
+
+def kernel_time(scene_ns: int) -> float:
+    """Return the time that the kernel is asked for at a scene time, s."""
+    return scene_ns * SECONDS_PER_NS
 
 
 def put_time(layout: Layout) -> Slot:

@@ -10,11 +10,12 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from circle_bounce_ros.ros.publishers import Topic, create_publisher
+from circle_bounce_ros.encoding.topics import Topic
+from circle_bounce_ros.ros.publishers import create_publisher
 from circle_bounce_ros.ros.runner import Runner
 from circle_bounce_ros.ros.timeline import SECOND, Progress
 
-DIAGNOSTICS = Topic('/diagnostics', DiagnosticArray)
+DIAGNOSTICS = Topic('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray')
 
 # The real-time factor may be as low as this part of what was asked.
 ENOUGH = 0.9

@@ -17,11 +17,12 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
+from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError
 from circle_bounce_ros.ros.compiling import BackgroundCompiler
 from circle_bounce_ros.ros.diagnostics import Diagnostics, Facts
 from circle_bounce_ros.ros.parameters import ParameterError, Parameters
-from circle_bounce_ros.ros.publishers import Moment, Publishers
+from circle_bounce_ros.ros.publishers import Publishers
 from circle_bounce_ros.ros.runner import Runner
 from circle_bounce_ros.ros.timeline import SECOND, ClockTimeline, Tick, WallTimeline
 

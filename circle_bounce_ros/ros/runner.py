@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from circle_bounce_ros.encoding.stamps import SECONDS_PER_NS, kernel_time
 from circle_bounce_ros.kernel import (
     Scene,
     Simulation,
@@ -18,13 +19,6 @@ from circle_bounce_ros.kernel import (
 
 # Steps of work between two looks at the clock: about 10 ms of the plain engine.
 SLICE = 256
-
-SECONDS_PER_NS = 1e-9
-
-
-def kernel_time(scene_ns: int) -> float:
-    """Return the time that the kernel is asked for at a scene time, s."""
-    return scene_ns * SECONDS_PER_NS
 
 
 def first_ns_after(seconds: float) -> int:

@@ -7,6 +7,6 @@ Each step refuses what it can judge, with a SceneError that says place, rule and
 """
 
 from circle_bounce_ros.scene_file.check import check_main
-from circle_bounce_ros.scene_file.loading import load_scene, scene_names
+from circle_bounce_ros.scene_file.loading import build_scene, load_scene, read_scene, scene_names
 
-__all__ = ['check_main', 'load_scene', 'scene_names']
+__all__ = ['build_scene', 'check_main', 'load_scene', 'read_scene', 'scene_names']

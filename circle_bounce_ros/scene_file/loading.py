@@ -46,17 +46,40 @@ def load_scene(path_or_name: str | os.PathLike[str], seed: int | None = None) ->
     """
     path = _path(path_or_name)
     try:
-        if seed is not None and not _is_seed(seed):
-            raise SceneError(
-                'seed', f'must be a whole number from 0 to {LARGEST_SEED}, got {seed!r}'
-            )
-        data = read(path)
-        check(data)
-        return _scene(data, path.stem, seed)
+        return build_scene(read(path), path.stem, seed)
     except SceneError as error:
         file = os.fspath(path_or_name)
         place = f'{file}: {error.place}' if error.place else file
         raise SceneError(place, error.problem) from None
+
+
+def read_scene(path_or_name: str | os.PathLike[str]) -> Any:
+    """
+    Return what a scene file says, as plain data that has not been checked.
+
+    Raises
+    ------
+    SceneError
+        For a file that is not there or no YAML.
+
+    """
+    return read(_path(path_or_name))
+
+
+def build_scene(data: dict[str, Any], name: str, seed: int | None = None) -> Scene:
+    """
+    Return the scene that plain data describes, as `load_scene` does for that of a file.
+
+    Raises
+    ------
+    SceneError
+        For everything that is wrong with it: `place: rule, value`.
+
+    """
+    if seed is not None and not _is_seed(seed):
+        raise SceneError('seed', f'must be a whole number from 0 to {LARGEST_SEED}, got {seed!r}')
+    check(data)
+    return _scene(data, name, seed)
 
 
 def scene_names() -> list[str]:

@@ -1,0 +1,227 @@
+"""
+A recording as Parquet tables, for people without ROS: full precision, units in the metadata of the columns.
+
+A table is a folder of parts, each written under another name and then renamed: whatever ends the program,
+each part is whole. `pandas.read_parquet(folder)` and `pyarrow.dataset` read a folder as one table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+from pyarrow import parquet
+
+from circle_bounce_ros.encoding.stamps import kernel_time
+from circle_bounce_ros.encoding.topics import Moment
+from circle_bounce_ros.kernel import Scene
+from circle_bounce_ros.offline.recording import write_scene
+
+# A part holds at most so many rows and so many ticks: what kill -9 may cost.
+ROWS_A_PART = 1 << 20
+TICKS_A_PART = 1 << 14
+
+COMPRESSION = 'zstd'
+
+Column = tuple[str, pa.DataType, str, str]
+
+STAMP: Column = ('stamp', pa.int64(), 'ns', 'simulated time since the start, never runs backwards')
+TIME: Column = ('time', pa.float64(), 's', 'scene time')
+
+TABLES: dict[str, list[Column]] = {
+    'bodies': [
+        STAMP,
+        TIME,
+        ('id', pa.uint32(), '1', 'index of the circle in the scene'),
+        ('x', pa.float64(), 'm', 'centre'),
+        ('y', pa.float64(), 'm', 'centre'),
+        ('vx', pa.float64(), 'm/s', 'velocity'),
+        ('vy', pa.float64(), 'm/s', 'velocity'),
+    ],
+    'contacts': [
+        STAMP,
+        TIME,
+        ('a', pa.uint32(), '1', 'index of the moving circle in the scene'),
+        ('b', pa.uint32(), '1', 'index of the other circle in the scene, or of the wall'),
+        ('kind', pa.uint8(), '1', '0 circle, 1 locked circle, 2 wall, 3 wall end'),
+        ('x', pa.float64(), 'm', 'contact point'),
+        ('y', pa.float64(), 'm', 'contact point'),
+        ('nx', pa.float64(), '1', 'normal from a to b'),
+        ('ny', pa.float64(), '1', 'normal from a to b'),
+        ('impulse', pa.float64(), 'N s', 'what b receives along the normal'),
+    ],
+}
+
+CIRCLES: list[Column] = [
+    ('id', pa.uint32(), '1', 'index of the circle in the scene'),
+    ('name', pa.string(), '1', 'null for a circle without a name'),
+    ('radius', pa.float64(), 'm', ''),
+    ('mass', pa.float64(), 'kg', 'of no effect for a locked circle'),
+    ('locked', pa.bool_(), '1', ''),
+    ('x', pa.float64(), 'm', 'centre at time 0'),
+    ('y', pa.float64(), 'm', 'centre at time 0'),
+]
+
+
+def schema_of(columns: list[Column], about: Mapping[str, str]) -> pa.Schema:
+    """Return a schema whose columns say unit and meaning, and which says where all of it comes from."""
+    fields = [
+        pa.field(name, kind, metadata={'unit': unit, 'meaning': meaning})
+        for name, kind, unit, meaning in columns
+    ]
+    return pa.schema(fields, metadata=dict(about))
+
+
+class Table:
+    """
+    A folder of parts, to which rows are added.
+
+    Parameters
+    ----------
+    folder : Path
+        Is made; its parent exists.
+    schema : pyarrow.Schema
+
+    """
+
+    def __init__(self, folder: Path, schema: pa.Schema) -> None:
+        folder.mkdir()
+        self._folder = folder
+        self._schema = schema
+        self._parts = 0
+        self._pending: list[dict[str, NDArray[Any]]] = []
+        self._rows = 0
+
+    def add(self, columns: dict[str, NDArray[Any]]) -> None:
+        """Add rows: arrays (n,) by the names of the columns, not to be written to any more."""
+        self._pending.append(columns)
+        self._rows += len(next(iter(columns.values())))
+        if self._rows >= ROWS_A_PART or len(self._pending) >= TICKS_A_PART:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that wait as a part; without any, an empty first part."""
+        if not self._pending and self._parts:
+            return
+        arrays = [
+            pa.array(self._gather(field.name), field.type, from_pandas=False)
+            for field in self._schema
+        ]
+        write_table(
+            pa.Table.from_arrays(arrays, schema=self._schema),
+            self._folder / f'part-{self._parts:05d}.parquet',
+        )
+        self._parts += 1
+        self._pending, self._rows = [], 0
+
+    def _gather(self, name: str) -> NDArray[Any]:
+        if not self._pending:
+            return np.zeros(0)
+        return np.concatenate([columns[name] for columns in self._pending])
+
+    def forget(self) -> None:
+        """Give up the rows that wait."""
+        self._pending, self._rows = [], 0
+
+
+def write_table(table: pa.Table, path: Path) -> None:
+    """Write a file that is whole as soon as it has its name."""
+    # Readers pass over names that begin with a dot.
+    begun = path.with_name(f'.{path.name}')
+    try:
+        parquet.write_table(
+            table,
+            begun,
+            compression=COMPRESSION,
+            # What repeats, and only that, is shorter as a dictionary.
+            use_dictionary=[
+                name for name in ('stamp', 'time', 'id') if name in table.schema.names
+            ],
+        )
+        begun.replace(path)
+    except BaseException:
+        begun.unlink(missing_ok=True)
+        raise
+
+
+class ParquetFolder:
+    """
+    A new folder with the tables `bodies`, `contacts` and `circles`.
+
+    Parameters
+    ----------
+    folder : Path
+        Must not exist.
+    scene : Scene
+    tables : collection of str, optional
+        Those of `TABLES` to record; by default all.
+
+    Raises
+    ------
+    OSError
+        When the folder cannot be made.
+
+    """
+
+    def __init__(self, folder: Path, scene: Scene, tables: Collection[str] | None = None) -> None:
+        folder.mkdir(parents=True)
+        write_scene(scene, folder)
+        about = {'scene': scene.name, 'seed': 'none' if scene.seed is None else str(scene.seed)}
+        write_table(_circles(scene, about), folder / 'circles.parquet')
+        moving = [i for i, circle in enumerate(scene.circles) if not circle.locked]
+        self._ids = np.array(moving, np.uint32)
+        self._tables = {
+            name: Table(folder / name, schema_of(columns, about))
+            for name, columns in TABLES.items()
+            if tables is None or name in tables
+        }
+        self.wants_contacts = 'contacts' in self._tables
+
+    def write(self, moment: Moment) -> None:
+        """Add a tick to the tables."""
+        state = moment.state
+        if 'bodies' in self._tables:
+            x, y = state.positions.T
+            vx, vy = state.velocities.T
+            time = np.full(self._ids.size, kernel_time(moment.scene_ns))
+            self._tables['bodies'].add(
+                self._stamped(moment, time) | {'id': self._ids, 'x': x, 'y': y, 'vx': vx, 'vy': vy}
+            )
+        if self.wants_contacts:
+            contacts = state.contacts
+            self._tables['contacts'].add(
+                self._stamped(moment, contacts['time'])
+                | {name: contacts[name] for name in contacts.dtype.names or () if name != 'time'}
+            )
+
+    @staticmethod
+    def _stamped(moment: Moment, time: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+        return {'stamp': np.full(len(time), moment.stamp_ns), 'time': time}
+
+    def close(self) -> None:
+        """Write what waits."""
+        for table in self._tables.values():
+            table.flush()
+
+    def abort(self) -> None:
+        """Give up what waits; the parts that are written stay."""
+        for table in self._tables.values():
+            table.forget()
+
+
+def _circles(scene: Scene, about: Mapping[str, str]) -> pa.Table:
+    circles = scene.circles
+    columns: dict[str, list[Any]] = {
+        'id': list(range(len(circles))),
+        'name': [circle.name for circle in circles],
+        'radius': [circle.radius for circle in circles],
+        'mass': [circle.mass for circle in circles],
+        'locked': [circle.locked for circle in circles],
+        'x': [circle.position[0] for circle in circles],
+        'y': [circle.position[1] for circle in circles],
+    }
+    return pa.Table.from_pydict(columns, schema=schema_of(CIRCLES, about))

@@ -1,0 +1,123 @@
+"""A scene, run as fast as it goes, tick by tick."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from circle_bounce_ros.encoding.stamps import kernel_time
+from circle_bounce_ros.encoding.topics import Moment
+from circle_bounce_ros.kernel import Circle, Scene, Simulation
+from circle_bounce_ros.offline.ticks import Tick
+
+# Steps of work between two questions whether to stop: some 0.1 s of the plain engine.
+SLICE = 4096
+
+# Beside the recording in its folder: the scene with every circle in it, as a scene file.
+SCENE_FILE = 'scene.yaml'
+
+
+class Sink(Protocol):
+    """Where a recording goes."""
+
+    @property
+    def wants_contacts(self) -> bool:
+        """Whether contacts are to be recorded."""
+
+    def write(self, moment: Moment) -> None:
+        """Write a tick."""
+
+    def close(self) -> None:
+        """Finish what was written."""
+
+    def abort(self) -> None:
+        """Let go of it as it stands, after an error."""
+
+
+class Snapshot:
+    """The state of a simulation, read when somebody asks and only once."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+
+    @cached_property
+    def positions(self) -> NDArray[np.float64]:
+        return self._simulation.positions
+
+    @cached_property
+    def velocities(self) -> NDArray[np.float64]:
+        return self._simulation.velocities
+
+    @cached_property
+    def contacts(self) -> NDArray[np.void]:
+        return self._simulation.drain_contacts()
+
+
+def moments(
+    simulation: Simulation, ticks: Iterable[Tick], stop: Callable[[], bool] = lambda: False
+) -> Iterator[Moment]:
+    """
+    Return what each tick shows. Each is to be used before the next one.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        At its first instant.
+    ticks : iterable of Tick
+    stop : callable
+        Asked every now and then; true ends it after the last complete tick.
+
+    Raises
+    ------
+    EndlessContactsError
+        For contacts without end at one instant.
+
+    """
+    for tick in ticks:
+        target = kernel_time(tick.scene_ns)
+        if target < simulation.time:
+            simulation.reset()
+        while not simulation.advance_to(target, at_most=SLICE):
+            if stop():
+                return
+        if stop():
+            return
+        yield Moment(tick.stamp_ns, tick.scene_ns, Snapshot(simulation))
+
+
+def write_scene(scene: Scene, folder: Path) -> None:
+    """Write a scene with its groups filled as a scene file, which gives the same scene to the last bit."""
+    (folder / SCENE_FILE).write_text(json.dumps(describe(scene), indent=None) + '\n')
+
+
+def describe(scene: Scene) -> dict[str, Any]:
+    """Return a scene as a scene file says it."""
+    seed = 'none' if scene.seed is None else scene.seed
+    data: dict[str, Any] = {
+        'description': f'Scene {scene.name}, seed {seed}, as it was recorded.',
+        'moving_circles_collide': scene.moving_circles_collide,
+        'circles': [_circle(circle) for circle in scene.circles],
+    }
+    if scene.walls:
+        data['walls'] = [{'start': list(w.start), 'end': list(w.end)} for w in scene.walls]
+    if math.isfinite(scene.restart_after):
+        data['restart_after'] = scene.restart_after
+    return data
+
+
+def _circle(circle: Circle) -> dict[str, Any]:
+    data: dict[str, Any] = {'position': list(circle.position), 'radius': circle.radius}
+    if circle.locked:
+        data['locked'] = True
+    else:
+        data |= {'velocity': list(circle.velocity), 'mass': circle.mass}
+    if circle.name:
+        data['name'] = circle.name
+    return data

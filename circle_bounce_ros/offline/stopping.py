@@ -1,0 +1,49 @@
+"""Ctrl-C and SIGTERM end a command after what it has in hand, so that what it writes is whole."""
+
+from __future__ import annotations
+
+import signal
+from types import FrameType, TracebackType
+from typing import Any
+
+
+class Stopping:
+    """
+    A context in which the first signal is only noted. A second one ends the program in the usual way.
+
+    Calling it tells whether one has come.
+    """
+
+    SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+    def __init__(self) -> None:
+        self._came: int | None = None
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Stopping:
+        self._before = {number: signal.signal(number, self._note) for number in self.SIGNALS}
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._restore()
+
+    def __call__(self) -> bool:
+        return self._came is not None
+
+    @property
+    def exit_status(self) -> int:
+        """What a shell expects of a program that a signal has ended, 0 without one."""
+        return 128 + self._came if self._came is not None else 0
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self._came = number
+        self._restore()
+
+    def _restore(self) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)

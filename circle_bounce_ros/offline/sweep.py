@@ -1,0 +1,308 @@
+"""bounce_sweep: many runs of one template, on Dask."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import fcntl
+import io
+import json
+import logging
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from itertools import islice
+from pathlib import Path
+from typing import Any, TextIO
+
+import dask
+import pyarrow as pa
+from distributed import CancelledError, Client, KilledWorker, LocalCluster, wait
+from tqdm import tqdm
+
+from circle_bounce_ros.offline.observables import COLUMNS
+from circle_bounce_ros.offline.parquet import write_table
+from circle_bounce_ros.offline.plan import Plan, PlanError, load_plan
+from circle_bounce_ros.offline.run import PLAN, RUNS, perform, remove_unfinished
+from circle_bounce_ros.offline.stopping import Stopping
+
+COMMAND = 'bounce_sweep'
+ROWS = 'rows.jsonl'
+SUMMARY = 'summary.parquet'
+SUMMARY_CSV = 'summary.csv'
+FAILURES = 'failures.jsonl'
+LOCK = '.lock'
+
+# Runs that wait at the scheduler for each thread of a worker: it never holds the whole sweep.
+AHEAD = 4
+# A run is given up after so many workers have died of it.
+DEATHS = 10
+# How often to look whether to stop.
+PATIENCE = 0.5  # s
+# How long a scheduler may take to answer.
+CONNECTING = '10s'
+
+
+class SweepError(ValueError):
+    """Why a sweep cannot go on, in one sentence."""
+
+
+def arguments_of(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """Return the parsed command line."""
+    parser = argparse.ArgumentParser(
+        prog=COMMAND,
+        description='Carry out all runs of a sweep; called again, those that are missing.',
+    )
+    parser.add_argument('sweep', type=Path, metavar='SWEEP.yaml')
+    parser.add_argument('-o', '--output', type=Path, required=True, metavar='FOLDER')
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument('--workers', type=int, help='processes on this machine; default: its cores')
+    where.add_argument(
+        '--scheduler', metavar='tcp://HOST:PORT', help='of a Dask cluster that sees the folder too'
+    )
+    chosen = parser.parse_args(arguments)
+    if chosen.workers is not None and chosen.workers < 1:
+        parser.error(f'--workers: must be at least 1, got {chosen.workers}')
+    return chosen
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Sweep.
+
+    Returns
+    -------
+    int
+        0; 1 when something is wrong or runs failed; 130 after Ctrl-C, to be called again.
+
+    """
+    chosen = arguments_of(arguments)
+    try:
+        plan = load_plan(chosen.sweep)
+        with locked(chosen.output, plan), Stopping() as stop:
+            failed = sweep(plan, chosen, stop)
+        return stop.exit_status or int(failed > 0)
+    except (SweepError, PlanError) as error:
+        print(f'{COMMAND}: {error}', file=sys.stderr)
+        return 1
+    except OSError as error:
+        print(f'{COMMAND}: {error.filename or ""}: {error.strerror or error}', file=sys.stderr)
+        return 1
+
+
+@contextmanager
+def locked(folder: Path, plan: Plan) -> Iterator[None]:
+    """
+    Make the folder of a sweep this command's own for a while.
+
+    Raises
+    ------
+    SweepError
+        When something else is in it, or another one is at work there.
+
+    """
+    plan_file = folder / PLAN
+    if folder.exists() and not plan_file.exists():
+        others = [path for path in folder.iterdir() if path.name not in (LOCK, f'.{PLAN}')]
+        if others:
+            raise SweepError(f'{folder}: exists and is no sweep, nothing was touched')
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / LOCK).open('a') as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise SweepError(f'{folder}: another {COMMAND} is at work there') from None
+        if not plan_file.exists():
+            replace(plan_file, plan.dump())
+        elif plan_file.read_text() != plan.dump():
+            raise SweepError(
+                f'{folder}: holds a sweep with other settings, nothing was touched: '
+                'take another folder'
+            )
+        yield
+
+
+def replace(path: Path, text: str) -> None:
+    """Write a file that is whole as soon as it has its name."""
+    begun = path.with_name(f'.{path.name}')
+    begun.write_text(text)
+    begun.replace(path)
+
+
+def sweep(plan: Plan, chosen: argparse.Namespace, stop: Stopping) -> int:
+    """Do what is missing, write the summary, and return how many runs failed."""
+    folder: Path = chosen.output.resolve()
+    remove_unfinished(folder / RUNS)
+    rows = finished_rows(folder)
+    missing = (number for number in range(len(plan)) if number not in rows)
+    left = len(plan) - len(rows)
+    failures: dict[int, dict[str, Any]] = {}
+    if left:
+        if rows:
+            print(f'{chosen.output}: {len(rows)} of {len(plan)} runs are there', file=sys.stderr)
+        with connect(chosen, left) as client, (folder / ROWS).open('a') as log:
+            for row in carry_out(client, plan, folder, missing, (len(plan), left), stop):
+                (failures if 'error' in row else rows)[row['run']] = row
+                if 'error' not in row:
+                    add_line(log, row)
+    write_summary(folder, plan, rows, failures)
+    for number in sorted(failures):
+        row = failures[number]
+        print(f'{COMMAND}: run {number}, seed {row.get("seed")}: {row["error"]}', file=sys.stderr)
+    unfinished = len(plan) - len(rows) - len(failures)
+    if unfinished:
+        print(
+            f'{chosen.output}: {unfinished} of {len(plan)} runs are missing: start it again',
+            file=sys.stderr,
+        )
+    print(f'{chosen.output}: {len(rows)} of {len(plan)} runs done, {len(failures)} failed')
+    return len(failures)
+
+
+@contextmanager
+def connect(chosen: argparse.Namespace, runs: int) -> Iterator[Any]:
+    """Return a client of the cluster that the command line says."""
+    settings = {
+        'distributed.scheduler.allowed-failures': DEATHS,
+        # Data never travels here, only numbers of runs: nothing to measure or to spill.
+        'distributed.worker.memory.spill': False,
+        'distributed.worker.memory.target': False,
+        'distributed.admin.tick.limit': '60s',
+    }
+    with dask.config.set(settings):
+        if chosen.scheduler:
+            try:
+                client = Client(chosen.scheduler, timeout=CONNECTING)
+            except (OSError, ValueError) as error:
+                raise SweepError(
+                    f'scheduler: must be one that answers, got {chosen.scheduler}: {error}'
+                ) from None
+            with client:
+                yield client
+            return
+        workers = min(chosen.workers or len(os.sched_getaffinity(0)), runs)
+        with (
+            LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                dashboard_address=None,
+                host='127.0.0.1',
+                silence_logs=logging.CRITICAL,
+            ) as cluster,
+            Client(cluster) as client,
+        ):
+            yield client
+
+
+def carry_out(
+    client: Any,
+    plan: Plan,
+    folder: Path,
+    missing: Iterator[int],
+    total_and_left: tuple[int, int],
+    stop: Stopping,
+) -> Iterator[dict[str, Any]]:
+    """Return the rows of runs as they come in, in any order."""
+    total, left = total_and_left
+    digest = plan.digest()
+
+    def submit(number: int) -> Any:
+        return client.submit(
+            perform, str(folder), digest, number, pure=False, key=f'run-{digest[:8]}-{number}'
+        )
+
+    threads = max(1, sum(client.nthreads().values()))
+    waiting = {submit(number) for number in islice(missing, AHEAD * threads)}
+    with tqdm(total=total, initial=total - left, unit='run', disable=None, file=sys.stderr) as bar:
+        while waiting:
+            try:
+                done = wait(waiting, PATIENCE, 'FIRST_COMPLETED').done
+            except TimeoutError:
+                done = set()
+            for future in done:
+                yield row_of(plan, future)
+                bar.update()
+            waiting -= done
+            if stop():
+                client.cancel(list(waiting))
+                return
+            waiting |= {submit(number) for number in islice(missing, len(done))}
+
+
+def row_of(plan: Plan, future: Any) -> dict[str, Any]:
+    """
+    Return the row of a run that is done, one way or another.
+
+    Raises
+    ------
+    SweepError
+        When the cluster has gone.
+
+    """
+    run = plan.run(int(future.key.rsplit('-', 1)[1]))
+    try:
+        row: dict[str, Any] = future.result()
+    except (CancelledError, OSError) as error:
+        raise SweepError(f'the cluster has gone: {error}; start it again') from None
+    except KilledWorker:
+        problem = f'{DEATHS} workers died while they had it'
+        return {'run': run.number, 'seed': run.seed, **run.parameters, 'error': problem}
+    return row
+
+
+def finished_rows(folder: Path) -> dict[int, dict[str, Any]]:
+    """Return the rows that are there. What was cut short in the middle of a line does not count."""
+    path = folder / ROWS
+    if not path.exists():
+        return {}
+    text = path.read_text()
+    whole = text[: text.rfind('\n') + 1]
+    if whole != text:
+        replace(path, whole)
+    rows = (json.loads(line) for line in whole.splitlines())
+    return {row['run']: row for row in rows}
+
+
+def add_line(log: TextIO, row: dict[str, Any]) -> None:
+    """Add a row to the log, so that it is there whatever happens next."""
+    log.write(json.dumps(row) + '\n')
+    log.flush()
+
+
+def write_summary(
+    folder: Path, plan: Plan, rows: dict[int, dict[str, Any]], failures: dict[int, dict[str, Any]]
+) -> None:
+    """Write all rows in the order of the runs, which is the same whoever carried them out."""
+    ordered = [rows[number] for number in sorted(rows)]
+    replace(folder / ROWS, ''.join(json.dumps(row) + '\n' for row in ordered))
+    failed = [failures[number] for number in sorted(failures)]
+    replace(folder / FAILURES, ''.join(json.dumps(row) + '\n' for row in failed))
+    units = {'run': ('1', 'number of the run'), 'seed': ('1', 'of its random numbers')}
+    units |= dict.fromkeys(plan.parameters, ('as in the scene file', 'parameter'))
+    units |= COLUMNS
+    fields, arrays = [], []
+    for name, (unit, meaning) in units.items():
+        values = [row[name] for row in ordered]
+        if any(isinstance(value, (list, dict)) for value in values):
+            values = [json.dumps(value) for value in values]
+        array = pa.array(values, pa.float64() if is_number(name, values) else None)
+        arrays.append(array)
+        metadata = {'unit': unit, 'meaning': meaning}
+        fields.append(pa.field(name, array.type, metadata=metadata))
+    schema = pa.schema(fields, metadata={'scene': plan.name, 'plan': plan.digest()})
+    write_table(pa.Table.from_arrays(arrays, schema=schema), folder / SUMMARY)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(units), lineterminator='\n')
+    writer.writeheader()
+    writer.writerows(ordered)
+    replace(folder / SUMMARY_CSV, text.getvalue())
+
+
+def is_number(name: str, values: list[Any]) -> bool:
+    """Return whether a column is one of real numbers, even if all of them happen to be whole or missing."""
+    return name in COLUMNS or any(isinstance(value, float) for value in values)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,74 @@
+"""What the tests of recordings, pictures and sweeps share. No ROS is needed, but for the comparison with the node."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+for library in ('rosbags', 'mcap', 'pyarrow', 'tqdm', 'distributed', 'matplotlib', 'PIL'):
+    pytest.importorskip(library, reason='recordings need the extra `offline`')
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 60.0  # s; only a fault takes that long
+
+
+class Commands:
+    """The commands, each in a process of its own."""
+
+    def start(self, command, *arguments, **options):
+        module = f'circle_bounce_ros.offline.{command.removeprefix("bounce_")}'
+        return subprocess.Popen(
+            [sys.executable, '-W', 'error', '-m', module, *map(str, arguments)],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            **options,
+        )
+
+    def run(self, command, *arguments, status=0, **options):
+        """Return what it wrote, to stdout if it is to succeed and to stderr otherwise."""
+        process = self.start(command, *arguments, **options)
+        out, error = process.communicate(timeout=2 * PATIENCE)
+        assert process.returncode == status, error
+        assert 'Traceback' not in error
+        return error if status else out
+
+
+@pytest.fixture(scope='session')
+def bounce():
+    return Commands()
+
+
+@pytest.fixture
+def write_scene(tmp_path):
+    """Return a function that writes a scene file and returns its path."""
+
+    def write_scene(name='own', **content):
+        path = tmp_path / f'{name}.yaml'
+        path.write_text(json.dumps(content))  # which is YAML as well
+        return path
+
+    return write_scene
+
+
+def wait_until(condition, what):
+    """Wait until a condition holds."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < deadline, f'not within {PATIENCE} s: {what}'
+        time.sleep(0.01)
+
+
+def files_of(folder):
+    """Return the content of all files below a folder, by name."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob('*'))
+        if path.is_file()
+    }

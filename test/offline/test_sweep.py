@@ -1,0 +1,344 @@
+"""bounce_sweep: all runs, once each, whoever carries them out and however often it is started."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import files_of, wait_until
+from pyarrow import parquet
+from rosbags.rosbag2 import Reader
+
+from circle_bounce_ros.kernel import ContactKind, Simulation
+from circle_bounce_ros.offline import theory
+from circle_bounce_ros.offline.plan import PlanError, load_plan, restore
+from circle_bounce_ros.offline.run import perform, plan_of
+from circle_bounce_ros.offline.sweep import main
+from circle_bounce_ros.scene_file import load_scene
+
+SMALL = {
+    'scene': './box.yaml',
+    'parameters': {'groups[0].packing': {'from': 0.1, 'to': 0.3, 'steps': 3}},
+    'seeds': {'first': 5, 'count': 2},
+    'duration': 4.0,
+    'warm_up': 1.0,
+    'rate': 20.0,
+}
+BOX = {
+    'groups': [
+        {
+            'count': 60,
+            'packing': 0.2,
+            'speed': {'maxwell': 1.0},
+            'region': {'min': [0, 0], 'max': [2, 2]},
+        }
+    ],
+    'walls': [{'box': {'min': [0, 0], 'max': [2, 2]}}],
+}
+RESULTS = {'rows.jsonl', 'summary.parquet', 'summary.csv', 'failures.jsonl', 'plan.json'}
+
+
+@pytest.fixture
+def write_sweep(tmp_path, write_scene):
+    """Return a function that writes a sweep with changes and returns its path."""
+    write_scene('box', **BOX)
+
+    def write_sweep(name='sweep', **changes):
+        path = tmp_path / f'{name}.yaml'
+        path.write_text(json.dumps(SMALL | changes))
+        return path
+
+    return write_sweep
+
+
+def results_of(folder):
+    """Return everything that a sweep gives, by name."""
+    files = files_of(folder)
+    return {name: data for name, data in files.items() if name != '.lock'}
+
+
+def perform_here(sweep, folder):
+    """Carry out a sweep in this process, without Dask, and return its rows."""
+    plan = load_plan(sweep)
+    folder.mkdir()
+    (folder / 'plan.json').write_text(plan.dump())
+    return [perform(str(folder), plan.digest(), number) for number in range(len(plan))]
+
+
+def rows_of(folder):
+    return [json.loads(line) for line in (folder / 'rows.jsonl').read_text().splitlines()]
+
+
+def test_every_combination_of_parameters_and_seeds_is_a_run(write_sweep):
+    plan = load_plan(
+        write_sweep(
+            parameters={'groups[0].packing': [0.1, 0.2], 'groups[0].speed.maxwell': [1, 2]}
+        )
+    )
+    runs = [plan.run(k) for k in range(len(plan))]
+    seen = [(r.seed, *r.parameters.values()) for r in runs]
+    assert seen == [(s, p, v) for p in (0.1, 0.2) for v in (1, 2) for s in (5, 6)]
+    scene = plan.build(runs[-1])
+    assert scene.seed == 6
+    area = sum(math.pi * circle.radius**2 for circle in scene.circles)
+    assert area / 4.0 == pytest.approx(0.2)
+    assert restore(plan.dump()) == plan
+
+
+@pytest.mark.parametrize(
+    ('changes', 'reason'),
+    [
+        ({'sedes': 1}, 'sedes: must be one of scene, duration'),
+        ({'duration': -1}, 'duration: must be > 0 s, got -1'),
+        ({'warm_up': 4.0}, 'warm_up: must be from 0 to < duration, got 4.0'),
+        ({'seeds': [1, 1]}, 'seeds: must be a list of different whole numbers'),
+        ({'parameters': {'groups[1].packing': [1]}}, 'leads nowhere in the scene, there is no 1'),
+        ({'parameters': {'groups[0].packing': 3}}, 'parameters.groups[0].packing: must be a list'),
+        ({'record': 'tape'}, "record: must be one of none, bag, parquet, got 'tape'"),
+        ({'scene': 'gaz'}, 'scene: must be one of'),
+        ({'rate': 0.01}, 'duration: must be at least one period'),
+    ],
+)
+def test_what_is_wrong_with_a_sweep_is_said(write_sweep, changes, reason):
+    path = write_sweep(**changes)
+    with pytest.raises(PlanError) as caught:
+        load_plan(path)
+    assert reason in str(caught.value)
+    assert str(caught.value).startswith(str(path))
+
+
+@pytest.mark.parametrize('record', ['bag', 'parquet'])
+def test_results_do_not_depend_on_the_number_of_workers(tmp_path, bounce, write_sweep, record):
+    sweep = write_sweep(record=record)
+    alone = perform_here(sweep, tmp_path / 'here')
+    bounce.run('bounce_sweep', sweep, '-o', tmp_path / 'two', '--workers', 2)
+    assert rows_of(tmp_path / 'two') == alone
+    here, two = results_of(tmp_path / 'here'), results_of(tmp_path / 'two')
+    assert {name: data for name, data in two.items() if name.startswith('runs/')} == {
+        name: data for name, data in here.items() if name.startswith('runs/')
+    }
+    assert len([name for name in two if name.endswith('row.json')]) == 6
+    summary = parquet.read_table(tmp_path / 'two/summary.parquet')
+    assert summary['contacts'].to_pylist() == [row['contacts'] for row in alone]
+    assert summary.schema.field('mean_free_path').metadata[b'unit'] == b'm'
+    with (tmp_path / 'two/summary.csv').open() as file:
+        table = list(csv.DictReader(file))
+    assert [float(row['pressure']) for row in table] == [row['pressure'] for row in alone]
+    if record == 'bag':
+        with Reader(tmp_path / 'two/runs/000000/000000003/recording') as reader:
+            assert {c.topic: c.msgcount for c in reader.connections}['/poses'] == 80
+
+
+def test_started_again_after_a_kill_it_does_only_what_is_missing(tmp_path, bounce, write_sweep):
+    sweep = write_sweep(record='bag', seeds={'first': 0, 'count': 8}, duration=10.0)
+    folder = tmp_path / 'out'
+    process = bounce.start(
+        'bounce_sweep', sweep, '-o', folder, '--workers', 1, start_new_session=True
+    )
+    log = folder / 'rows.jsonl'
+    wait_until(lambda: log.exists() and log.read_text().count('\n') >= 3, 'three runs')
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate(timeout=60)
+    done = {path: path.stat().st_mtime_ns for path in folder.glob('runs/*/*/row.json')}
+    assert 3 <= len(done) < 24
+    with log.open('a') as file:
+        file.write('{"run": 23, "se')  # torn in the middle of a line
+    (folder / 'runs/000000/.000000023-cut').mkdir()
+    out = bounce.run('bounce_sweep', sweep, '-o', folder, '--workers', 1)
+    assert '24 of 24 runs done, 0 failed' in out
+    assert {path: path.stat().st_mtime_ns for path in done} == done
+    assert not list(folder.glob('runs/*/.*'))
+    assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
+    # And again: nothing at all is missing.
+    before = results_of(folder)
+    assert '24 of 24 runs done' in bounce.run('bounce_sweep', sweep, '-o', folder)
+    assert results_of(folder) == before
+
+
+def test_a_failing_run_is_reported_with_its_seed_and_stops_no_other(tmp_path, bounce, write_sweep):
+    sweep = write_sweep(parameters={'groups[0].packing': [0.2, 0.99]})
+    folder = tmp_path / 'out'
+    error = bounce.run('bounce_sweep', sweep, '-o', folder, '--workers', 1, status=1)
+    for run, seed in ((2, 5), (3, 6)):
+        assert f'bounce_sweep: run {run}, seed {seed}: SceneError: groups[0]' in error
+    assert [row['run'] for row in rows_of(folder)] == [0, 1]
+    failures = [json.loads(line) for line in (folder / 'failures.jsonl').read_text().splitlines()]
+    assert [(f['run'], f['seed'], f['groups[0].packing']) for f in failures] == [
+        (2, 5, 0.99),
+        (3, 6, 0.99),
+    ]
+
+
+class Cluster:
+    """A scheduler and workers, each in a process of its own."""
+
+    def __init__(self, folder):
+        self._folder = folder
+        self._file = folder / 'scheduler.json'
+        options = ['--port', '0', '--no-dashboard', '--scheduler-file', self._file]
+        self.processes = [self._start('scheduler', *options)]
+        wait_until(self._file.exists, 'a scheduler')
+        self.address = json.loads(self._file.read_text())['address']
+        self.workers = []
+
+    def _start(self, kind, *options):
+        log = (self._folder / f'{kind}{len(getattr(self, "processes", []))}.log').open('w')
+        with log:
+            return subprocess.Popen(
+                [sys.executable, '-m', f'distributed.cli.dask_{kind}', *map(str, options)],
+                stdout=log,
+                stderr=log,
+                cwd=self._folder,
+            )
+
+    def add_worker(self):
+        options = ['--nthreads', 1, '--no-nanny', '--no-dashboard', '--scheduler-file', self._file]
+        self.workers.append(self._start('worker', *options))
+        self.processes.append(self.workers[-1])
+
+    def end(self):
+        for process in reversed(self.processes):
+            process.kill()
+            process.wait(timeout=60)
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    cluster = Cluster(tmp_path)
+    try:
+        yield cluster
+    finally:
+        cluster.end()
+
+
+def test_a_worker_killed_in_the_middle_costs_nothing_but_time(
+    tmp_path, bounce, write_sweep, cluster
+):
+    sweep = write_sweep(record='bag', seeds={'first': 0, 'count': 8}, duration=20.0)
+    cluster.add_worker()
+    cluster.add_worker()
+    folder = tmp_path / 'out'
+    process = bounce.start('bounce_sweep', sweep, '-o', folder, '--scheduler', cluster.address)
+    # Killed with a run in its hands.
+    wait_until(lambda: len(list(folder.glob('runs/*/.*'))) >= 2, 'two runs at work')
+    cluster.workers[0].kill()
+    out, error = process.communicate(timeout=120)
+    assert process.returncode == 0, error
+    assert '24 of 24 runs done, 0 failed' in out
+    assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
+
+
+def test_a_scheduler_that_is_not_there_is_said(tmp_path, capsys, write_sweep, monkeypatch):
+    monkeypatch.setattr('circle_bounce_ros.offline.sweep.CONNECTING', '0.5s')
+    arguments = [
+        str(write_sweep()),
+        '-o',
+        str(tmp_path / 'out'),
+        '--scheduler',
+        'tcp://127.0.0.1:9',
+    ]
+    assert main(arguments) == 1
+    assert 'scheduler: must be one that answers, got tcp://127.0.0.1:9' in capsys.readouterr().err
+
+
+def test_a_folder_with_something_else_in_it_is_refused(tmp_path, capsys, write_sweep):
+    folder = tmp_path / 'out'
+    folder.mkdir()
+    (folder / 'precious').write_text('data')
+    assert main([str(write_sweep()), '-o', str(folder)]) == 1
+    assert 'exists and is no sweep, nothing was touched' in capsys.readouterr().err
+    assert files_of(folder) == {'precious': b'data'}
+
+
+def test_a_folder_of_another_sweep_is_refused(tmp_path, capsys, write_sweep):
+    folder = tmp_path / 'out'
+    perform_here(write_sweep(), folder)
+    before = files_of(folder)
+    assert main([str(write_sweep('other', duration=5.0)), '-o', str(folder)]) == 1
+    assert 'holds a sweep with other settings' in capsys.readouterr().err
+    assert {n: d for n, d in files_of(folder).items() if n != '.lock'} == before
+    with pytest.raises(ValueError, match='holds another sweep'):
+        plan_of(str(folder), 'another digest')
+
+
+def row_of(tmp_path, write_sweep, **changes):
+    (row,) = perform_here(write_sweep(parameters={}, seeds=[1], **changes), tmp_path / 'one')
+    assert 'error' not in row, row
+    return row
+
+
+def test_a_ball_between_two_walls_has_the_numbers_worked_out_by_hand(
+    tmp_path, write_sweep, write_scene
+):
+    # 1.8 m from contact to contact at 1 m/s and 2 kg, for 90 s; from the middle, so 50 contacts.
+    write_scene(
+        'box',
+        circles=[{'position': [1, 1], 'velocity': [1, 0], 'radius': 0.1, 'mass': 2.0}],
+        walls=[{'box': {'min': [0, 0], 'max': [2, 2]}}],
+    )
+    row = row_of(tmp_path, write_sweep, duration=90.0, warm_up=0.0)
+    assert (row['contacts'], row['pair_contacts'], row['circles']) == (50, 0, 1)
+    assert row['contact_rate'] == pytest.approx(50 / 90)
+    assert row['mean_free_path'] == pytest.approx(1.8)
+    assert row['temperature'] == pytest.approx(1.0)  # m v^2 / 2
+    # Each contact gives 2 m v = 4 N s, on 4 walls of 1.8 m that its centre can touch.
+    assert row['pressure_walls'] == pytest.approx(50 * 4 / 90 / 7.2)
+    assert row['energy_error'] < 1e-15
+    assert row['measured'] == pytest.approx(90.0)
+
+
+def test_the_pressure_is_that_of_the_contacts_in_the_window(tmp_path, write_sweep):
+    row = row_of(tmp_path, write_sweep)
+    plan = load_plan(write_sweep(parameters={}, seeds=[1]))
+    scene = plan.build(plan.run(0))
+    simulation = Simulation(scene, record_contacts=True)
+    simulation.advance_to(1.0)
+    simulation.drain_contacts()
+    radius = simulation.radii[0]
+    rim = min(10 * radius, 0.5)
+    kinetic, inside_count = [], []
+    for k in range(21, 81):
+        simulation.advance_to(k / 20)
+        x, y = simulation.positions.T
+        inside = (np.abs(x - 1) < 1 - rim) & (np.abs(y - 1) < 1 - rim)
+        kinetic.append(0.5 * np.square(simulation.velocities[inside]).sum())
+        inside_count.append(inside.sum())
+    log = simulation.drain_contacts()
+    pairs = log[log['kind'] == ContactKind.CIRCLE]
+    near = (np.abs(pairs['x'] - 1) < 1 - rim) & (np.abs(pairs['y'] - 1) < 1 - rim)
+    area = (2 - 2 * rim) ** 2
+    # P A = N kT + sum(2 r J) / (2 T)
+    expected = (np.mean(kinetic) + radius * pairs['impulse'][near].sum() / 3.0) / area
+    assert row['pressure'] == pytest.approx(expected, rel=1e-9)  # roundings
+    packing = np.mean(inside_count) * math.pi * radius**2 / area
+    assert row['packing'] == pytest.approx(packing, rel=1e-9)
+
+
+def test_a_gas_has_the_pressure_path_and_diffusion_of_theory(tmp_path, write_sweep):
+    row = row_of(tmp_path, write_sweep, scene='gas', duration=30.0, warm_up=5.0)
+    scene = load_scene('gas', 1)
+    radius = scene.circles[0].radius
+    packing, thermal = row['packing'], math.sqrt(row['temperature'])
+    # One run of 25 s in a window scatters by 0.5 %: three times that.
+    assert row['compressibility'] == pytest.approx(theory.virial_series(packing), rel=0.015)
+    # Over the whole box, whose rim has fewer pairs but walls to touch.
+    assert row['mean_free_path'] == pytest.approx(theory.mean_free_path(radius, packing), rel=0.05)
+    # Enskog's first order is known to be low by up to a tenth at this packing; 300 circles, 60 times.
+    diffusion = theory.diffusion(radius, packing, thermal)
+    assert 0.95 * diffusion < row['diffusion'] < 1.2 * diffusion
+
+
+def test_theory_is_what_the_literature_says():
+    # Erpenbeck and Luban, Phys. Rev. A 32 (1985): Z of hard disks at A / A0 = 5, 2 and 1.8, where A0 is the
+    # area of the closest packing, pi / sqrt(12) of phi. Read off to their digits.
+    closest = math.pi / math.sqrt(12.0)
+    for expanded, expected in ((5.0, 1.4983), (2.0, 3.4243), (1.8, 4.1715)):
+        assert theory.virial_series(closest / expanded) == pytest.approx(expected, rel=1e-3)
+        assert theory.compressibility(closest / expanded) == pytest.approx(expected, rel=6e-3)
