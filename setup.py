@@ -27,6 +27,7 @@ setup(
     maintainer_email='developers@circle-bounce-ros.example.com',
     python_requires='>=3.10,<3.14',
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
+    package_data={f'{PACKAGE}.viewer': ['page/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml', 'LICENSE']),
@@ -49,10 +50,14 @@ setup(
             'import-linter==2.15',
         ],
         'docs': ['matplotlib>=3.8'],
+        'viewer': ['aiohttp>=3.9'],
+        # Drives the Chromium of the system in the viewer's tests; it downloads none.
+        'browser': ['playwright>=1.45'],
     },
     entry_points={
         'console_scripts': [
             'bounce_node = circle_bounce_ros.ros.node:main',
+            'bounce_viewer = circle_bounce_ros.viewer.main:main',
             'bounce_check = circle_bounce_ros.scene_file.check:check_main',
         ],
     },

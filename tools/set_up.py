@@ -38,7 +38,8 @@ print(json.dumps({
 def packages(environment, ros_sourced):
     """Return what pip has to install into an environment."""
     if environment == '.venv':
-        extras = 'test,check,docs' if ros_sourced else 'ros,test,check,docs'
+        extras = 'test,check,docs,viewer,browser'
+        extras = extras if ros_sourced else 'ros,' + extras
         return ['--editable', '.[{}]'.format(extras)]
     if environment == '.venvs/kernel':
         return ['numpy', 'pytest']
