@@ -15,7 +15,8 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 	command -v $$p && break; done)
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
-.PHONY: help set-up run listen reset check test test-kernel test-bare-kernel test-rest clean distclean
+.PHONY: help set-up run listen reset check clean distclean
+.PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-rest
 .NOTPARALLEL:
 
 help:
@@ -64,12 +65,15 @@ check: .venv
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: set-up check test-kernel test-bare-kernel test-rest
+test: set-up check test-kernel test-compiled-kernel test-bare-kernel test-rest
 	@echo 'make test: PASSED'
 
-# Branch coverage, measured by the kernel's own tests.
+# Branch coverage of the plain engine, measured by the kernel's own tests.
 test-kernel: .venv
-	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel
+	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel --engine plain
+
+test-compiled-kernel: .venv
+	$(BIN)/python -m pytest test/kernel --engine compiled
 
 # The same tests where there is nothing but numpy and pytest: no ROS, no YAML, no compiler.
 test-bare-kernel: .venvs/kernel

@@ -38,7 +38,7 @@ print(json.dumps({
 def packages(environment, ros_sourced):
     """Return what pip has to install into an environment."""
     if environment == '.venv':
-        extras = 'test,check,docs,viewer,browser'
+        extras = 'fast,test,check,docs,viewer,browser'
         extras = extras if ros_sourced else 'ros,' + extras
         return ['--editable', '.[{}]'.format(extras)]
     if environment == '.venvs/kernel':
@@ -208,6 +208,9 @@ def make(environment, key, python, ros_sourced):
     run([python['executable'], '-m', 'venv'] + sites + [str(folder)])
     pip = [str(folder / 'bin/python'), '-m', 'pip', '--disable-pip-version-check']
     run(pip + ['install', '--quiet', '--use-pep517'] + packages(environment, ros_sourced))
+    if environment == '.venv':
+        compile_ahead = 'from circle_bounce_ros.kernel import compile_ahead; compile_ahead()'
+        run([str(folder / 'bin/python'), '-c', compile_ahead])
     base = os.path.realpath(str(folder / 'bin/python'))
     finished = stamp.with_suffix('.new')
     finished.write_text(json.dumps({'key': key, 'base': base, 'python': python['executable']}))

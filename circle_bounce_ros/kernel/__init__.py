@@ -11,6 +11,8 @@ from circle_bounce_ros.kernel.contact import (
     distance,
     in_contact,
 )
+from circle_bounce_ros.kernel.engine.compilation import compiled_code_is_ready
+from circle_bounce_ros.kernel.engine.modes import compile_ahead
 from circle_bounce_ros.kernel.impact import time_to_touch, time_to_wall
 from circle_bounce_ros.kernel.invariants import deepest_overlap, kinetic_energy, momentum
 from circle_bounce_ros.kernel.reflection import (
@@ -40,6 +42,8 @@ __all__ = [
     'Wall',
     'bounce_angles',
     'boxes_overlap',
+    'compile_ahead',
+    'compiled_code_is_ready',
     'contact_normal',
     'contact_point',
     'deepest_overlap',

@@ -156,4 +156,4 @@ def wall_frame(sx: float, sy: float, ex: float, ey: float) -> tuple[float, float
     length = math.sqrt(dx * dx + dy * dy)  # not hypot: its last digit differs between Pythons
     if length == 0.0:
         raise ValueError(f'end: must differ from start, got {(ex, ey)} for both')
-    return -dy / length, dx / length, length
+    return (sy - ey) / length, dx / length, length  # sy - ey, not -dy: no negative zero

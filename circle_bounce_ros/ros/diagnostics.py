@@ -20,7 +20,8 @@ DIAGNOSTICS = Topic('/diagnostics', DiagnosticArray)
 ENOUGH = 0.9
 
 # Measured over less, a real-time factor says more about one tick than about the machine.
-MEASURED_OVER = SECOND // 2  # ns
+LEAST_TIME = SECOND // 2  # ns
+LEAST_TICKS = 10
 
 # A tick is late when it comes after so many periods.
 LATE = 1.5
@@ -70,6 +71,7 @@ class Diagnostics:
         self._dropped = Fraction(0)  # since then, ns
         self._late_ticks = 0
         self._last_tick: int | None = None
+        self._period_ns = 0
         self._contacts_per_second = 0.0
         self._contacts_then = (steady_ns, 0)
 
@@ -90,6 +92,7 @@ class Diagnostics:
         if self._last_tick is not None and 0 < LATE * period_ns < steady_ns - self._last_tick:
             self._late_ticks += 1
         self._last_tick = steady_ns
+        self._period_ns = period_ns
         self._progress += progress
         self._dropped += progress.dropped_ns
 
@@ -99,9 +102,12 @@ class Diagnostics:
         self._contacts_then = (steady_ns, contact_count)
         self._contacts_per_second = (contact_count - count) * SECOND / (steady_ns - then)
         self._dropped_before, self._dropped = self._dropped, Fraction(0)
-        if self._progress.passed_ns >= MEASURED_OVER:
+        if self._progress.passed_ns >= max(LEAST_TIME, LEAST_TICKS * self._period_ns):
             self._real_time_factor = self._progress.real_time_factor
             self._progress = Progress()
+        elif self._progress.passed_ns == 0 and self._period_ns < SECOND:
+            # A clock that stands says nothing about the machine.
+            self._real_time_factor = math.nan
 
     def report_change(self, stamp_ns: int, facts: Facts, runner: Runner) -> None:
         """Report if the facts, or how well it goes, are others than reported last."""

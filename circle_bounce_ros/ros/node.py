@@ -18,6 +18,7 @@ from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
 from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError
+from circle_bounce_ros.ros.compiling import BackgroundCompiler
 from circle_bounce_ros.ros.diagnostics import Diagnostics, Facts
 from circle_bounce_ros.ros.parameters import ParameterError, Parameters
 from circle_bounce_ros.ros.publishers import Moment, Publishers
@@ -61,6 +62,7 @@ class BounceNode(Node):
         )
         self._outputs = Publishers(self, self._settings['frame_id'], self._leads)
         self._diagnostics = Diagnostics(self, time.monotonic_ns())
+        self._compiler = BackgroundCompiler()
         self._show_scene()
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
@@ -77,6 +79,15 @@ class BounceNode(Node):
         self._outputs.show(scene)
         self._timeline.set_restart_after(scene.restart_after)
         self.get_logger().info(f'{describe(scene)} in frame {self._settings["frame_id"]!r}')
+        if self._compiler.start():
+            self.get_logger().info(
+                'compiling the engine in the background, once: until the next reset it runs plain, slower'
+            )
+
+    def destroy_node(self) -> None:
+        """End what the node has started."""
+        self._compiler.stop()
+        super().destroy_node()
 
     def _on_timer(self) -> None:
         with self._lock:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from geometry_msgs.msg import PoseArray, PoseStamped, TwistStamped
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -96,6 +97,9 @@ def create_publisher(node: Node, topic: Topic) -> Publisher:
             topic.name,
             topic.qos(),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            # The executor would ask each publisher for events in every round, a third of a tick's cost;
+            # of a QoS that does not fit, the subscriber is told as well.
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         )
     except (ParameterException, RuntimeError, ValueError) as error:
         raise ParameterError(f'qos_overrides of {topic.name}: {error}') from error

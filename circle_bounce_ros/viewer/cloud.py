@@ -56,7 +56,7 @@ def read_cloud(message: bytes) -> Cloud:
         reader.position += 8  # the stamp
         reader.text()
         height, width, count = reader.uint32(), reader.uint32(), reader.uint32()
-        formats: dict[str, tuple[np.dtype[Any], int]] = {}
+        formats: dict[str, tuple[Any, int]] = {}
         for _ in range(count):
             name, offset, datatype = reader.text(), reader.uint32(), reader.uint8()
             reader.uint32()  # one number a field

@@ -112,9 +112,9 @@ class Server:
         app = web.Application(middlewares=[only_this_machine(hosts)], client_max_size=1024)
         app.router.add_get('/socket', self._socket)
         app.router.add_get('/{path:.*}', self._file)
-        self._runner = web.AppRunner(app, access_log=None, handle_signals=False)
+        self._runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0)
         await self._runner.setup()
-        await web.SockSite(self._runner, bound, shutdown_timeout=1.0).start()
+        await web.SockSite(self._runner, bound).start()
         self._begin(self._tell_status())
         return f'http://{LOOPBACK}:{port}', in_use
 

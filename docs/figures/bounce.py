@@ -59,7 +59,7 @@ def reflection() -> tuple[Figure, Numbers]:
         s.label(
             axes, 0.5 * along - across - (0.16 + 0.22 * abs(n[0])) * n, 'along', s.HELP, size=9.0
         )
-        s.label(axes, -0.62 * across, 'across', s.HELP, size=9.0)
+        s.label(axes, -0.66 * across, 'across', s.HELP, size=9.0)
         numbers[f'{name} vh'], numbers[f'{name} vv'] = velocity.tolist()
         s.caption(axes, f"v = {_vector(velocity)}\nv' = {_vector(new)}")
     return figure, numbers

@@ -104,12 +104,12 @@ def squares() -> tuple[Figure, Numbers]:
     s.label(left, (0.75, -0.53), f'in_contact: {in_contact(a, r, b, r)}', align='left')
 
     # All places of the second centre: a square of half-width r1 + r2 around a circle of that radius.
-    rng = np.linspace(-1.2, 1.2, 801)
-    x, y = np.meshgrid(rng, rng)
+    middles = (np.arange(800) + 0.5) / 400.0 - 1.0
+    x, y = np.meshgrid(middles, middles)
     places = np.column_stack((x.ravel(), y.ravel()))
     boxes = boxes_overlap(a, r, places, r)
     wrong = boxes & ~in_contact(a, r, places, r)
-    s.plane(right, (-1.5, 1.5), (-1.1, 1.3), 'where may the second centre be?')
+    s.plane(right, (-1.5, 1.5), (-1.1, 1.3), 'all places of the second centre')
     s.area(right, [(-1, -1), (1, -1), (1, 1), (-1, 1)], '#F2C84B')
     right.add_patch(Circle(a, 2 * r, facecolor='#DCEBF5', edgecolor=s.NORMAL, zorder=2))
     s.square(right, a, 2 * r, s.INK)

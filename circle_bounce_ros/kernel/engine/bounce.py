@@ -71,6 +71,8 @@ def note(world: World, a: Record, b: int, kind: int, nx: float, ny: float, push:
         line.b = b
         line.kind = kind
         line.impulse = push * math.sqrt(nx * nx + ny * ny)
-        line.nx, line.ny = unit_xy(nx, ny)
+        nx, ny = unit_xy(nx, ny)
+        line.nx = nx + 0.0  # nobody wants to read a negative zero
+        line.ny = ny + 0.0
         line.x = a.x + a.radius * line.nx
         line.y = a.y + a.radius * line.ny

@@ -13,6 +13,8 @@ import os
 import sys
 import tempfile
 from collections.abc import Callable
+from importlib import import_module
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from types import FunctionType
@@ -20,6 +22,7 @@ from typing import Any
 
 KERNEL = Path(__file__).resolve().parents[1]
 PACKAGE = 'circle_bounce_ros.kernel'
+READY = 'ready'
 
 Function = Callable[..., Any]
 
@@ -29,10 +32,22 @@ def is_available() -> bool:
     return find_spec('numba') is not None
 
 
+def compiled_code_is_ready() -> bool:
+    """Return whether compiled code of this very source is on disk: then nobody has to wait for it."""
+    folder = cache_directory() if is_available() else None
+    return folder is not None and (folder / READY).exists()
+
+
+def say_ready() -> None:
+    """Note that the compiled code on disk is complete."""
+    folder = cache_directory()
+    if folder is not None:
+        (folder / READY).touch()
+
+
 def compile_entries(*entries: Function) -> list[Function]:
     """Return compiled twins of functions, which call compiled twins of all that they call."""
-    import numba
-
+    numba: Any = import_module('numba')
     twins: dict[Function, Any] = {}
     previous = numba.config.CACHE_DIR
     folder = cache_directory()
@@ -62,8 +77,7 @@ def _twin(function: Function, twins: dict[Function, Any], options: dict[str, Any
 
 
 def _njit(function: Function, options: dict[str, Any]) -> Any:
-    import numba
-
+    numba: Any = import_module('numba')
     common = {'error_model': 'numpy', 'nogil': True, **options}
     try:
         return numba.njit(_nrt=False, **common)(function)
@@ -78,12 +92,10 @@ def cache_directory() -> Path | None:
     Numba itself looks at the file of each function only, not at those of the functions it calls. The
     package's own folder may be read-only, and is not touched.
     """
-    import numba
-
-    digest = hashlib.sha256(f'{numba.__version__} {sys.version}'.encode())
+    digest = hashlib.sha256(f'{version("numba")} {sys.version}'.encode())
     for file in sorted(KERNEL.rglob('*.py')):
         digest.update(file.read_bytes())
-    user = os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache'
+    user = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
     temporary = Path(tempfile.gettempdir()) / f'circle_bounce_ros_{os.getuid()}'
     for base in (Path(user) / 'circle_bounce_ros', temporary):
         folder = base / digest.hexdigest()[:16]

@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.engine import compilation, records
 from circle_bounce_ros.kernel.engine.alone import run_alone
+from circle_bounce_ros.kernel.engine.build import build
 from circle_bounce_ros.kernel.engine.loop import run
 from circle_bounce_ros.kernel.engine.records import World
+from circle_bounce_ros.kernel.scene import Circle, Scene
 
 # For so few moving circles plain code is the faster one.
 FEW = 4
@@ -48,6 +50,29 @@ def compiled() -> Mode:
     """
     together, alone = compilation.compile_entries(run, run_alone)
     return Mode(together, alone, takes_arrays=True)
+
+
+def compile_ahead() -> bool:
+    """
+    Compile the engine now and keep it on disk, so that the first simulation need not wait.
+
+    Returns
+    -------
+    bool
+        Whether there is compiled code from here on: False where numba is not installed.
+
+    """
+    if not compilation.is_available():
+        return False
+    for collide in (True, False):
+        two = [Circle((x, 0.0), (1.0, 0.0), radius=0.1) for x in (0.0, 1.0)]
+        world = build(Scene(two, moving_circles_collide=collide), keep_log=False)
+        if collide:
+            compiled().run(world, 1.0, 100)
+        else:
+            compiled().run_alone(world, 1.0)
+    compilation.say_ready()
+    return True
 
 
 def choose(count: int, wanted: bool | None) -> Mode:

@@ -2,7 +2,8 @@
 
 const CLOSEST = 1e6; // CSS pixels per metre
 const FURTHEST = 1e-6;
-const MARGIN = 28; // CSS pixels around a scene that fits
+const MARGIN = 24; // CSS pixels around a scene that fits
+const BELOW = 34; // more of them below it, for what is written there
 
 export class Camera {
   constructor() {
@@ -23,8 +24,9 @@ export class Camera {
     this.x = (left + right) / 2;
     this.y = (bottom + top) / 2;
     const wide = (this.width - 2 * MARGIN) / Math.max(right - left, 1e-9);
-    const high = (this.height - 2 * MARGIN) / Math.max(top - bottom, 1e-9);
+    const high = (this.height - 2 * MARGIN - BELOW) / Math.max(top - bottom, 1e-9);
     this.scale = clamp(Math.min(wide, high), FURTHEST, CLOSEST);
+    this.y -= BELOW / 2 / this.scale;
     this.fits = true;
   }
 

@@ -52,6 +52,10 @@ export function degrees(radians) {
   return 360 * (turns - Math.round(turns));
 }
 
+export function showDegrees(radians) {
+  return `${degrees(radians).toFixed(1)}°`.replace('-', '−');
+}
+
 // A step's contacts of one circle, taken apart: its velocity before and after each.
 //
 // The messages hold the velocity before the first and after the last. Between them each contact changes it by

@@ -1,6 +1,6 @@
 // The lesson drawn over the picture: what a teacher would draw on the board.
 
-import { bounceAngles, degrees, length, minus, plus, times, unit } from './lesson.js';
+import { bounceAngles, degrees, showDegrees, length, minus, plus, times, unit } from './lesson.js';
 import { squaresThatOverlap } from './story.js';
 
 const MOST_SQUARES = 400;
@@ -110,7 +110,7 @@ export class Overlay {
   get reach() {
     const { camera, story } = this.view;
     const size = Math.min(camera.width, camera.height);
-    return Math.min(Math.max(70, story.now.radius * camera.scale * 1.7), 0.26 * size);
+    return Math.min(Math.max(120, story.now.radius * camera.scale * 2.2), 0.24 * size);
   }
 
   step(velocity) {
@@ -176,6 +176,7 @@ export class Overlay {
     const { reach } = this;
     this.ring(centre, radius, look.text, 1.5, [3, 4]);
     this.line(minus(touch, times(surface, reach * 1.15)), plus(touch, times(surface, reach * 1.15)), look.dim, 1.5);
+    this.line(centre, plus(touch, times(normal, reach * 0.8)), look.halo, 5);
     this.line(minus(centre, times(normal, reach * 0.35)), plus(touch, times(normal, reach * 0.8)), look.normal, 2, [9, 5]);
     this.label('normal', plus(touch, times(normal, reach * 0.8 + 14)), look.normal);
     this.line(centre, plus(centre, [reach * 1.05, 0]), look.dim, 1, [2, 4]);
@@ -229,8 +230,10 @@ export class Overlay {
     c.beginPath();
     c.arc(...tip, 3, 0, 2 * Math.PI);
     c.fill();
-    const middle = plus(centre, [(radius + 26) * Math.cos(turn / 2), -(radius + 26) * Math.sin(turn / 2)]);
-    this.label(`${name} ${degrees(radians).toFixed(1)}°`, middle, colour);
+    // A flat angle is written beside its arc, where no arrow is.
+    const place = Math.abs(turn) < 0.3 ? Math.sign(turn || 1) * 0.3 : turn / 2;
+    const far = radius + 12 + 34 * Math.abs(Math.cos(place));
+    this.label(`${name} ${showDegrees(radians)}`, plus(centre, [far * Math.cos(place), -far * Math.sin(place)]), colour);
   }
 
   drawSquares({ world, story, camera, look }) {

@@ -1,8 +1,8 @@
 // The words and numbers beside the picture.
 
-import { degrees, dot, length } from './lesson.js';
-import { KINDS } from './lesson.js';
+import { KINDS, dot, length, showDegrees } from './lesson.js';
 import { metres } from './overlay.js';
+import { raised } from './plots.js';
 
 export const find = (id) => document.getElementById(id);
 
@@ -11,7 +11,6 @@ export function write(id, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-const angle = (radians) => `${degrees(radians).toFixed(1)}°`;
 const speed = (value) => `${value.toFixed(3)} m/s`;
 const signed = (value) => `${value < 0 ? '−' : ''}${Math.abs(value).toFixed(2)}`;
 
@@ -27,8 +26,7 @@ export function showDiagnostics({ values, message, warns }) {
   const factor = Number(values['real-time factor']);
   write('n-factor', Number.isFinite(factor) ? `${factor.toFixed(2)} ×` : 'measuring');
   write('n-contacts', Math.round(Number(values['contacts/s'])).toLocaleString('en'));
-  write('n-energy', Number(values['energy error']).toExponential(1).replace('-', '−').replace('e', ' · 10^').replace('^-', '^−'));
-  find('n-energy').textContent = power(Number(values['energy error']));
+  write('n-energy', power(Number(values['energy error'])));
   const paused = values.paused === 'true';
   write('state', paused ? 'paused' : 'running');
   find('state').dataset.state = paused ? 'paused' : 'running';
@@ -39,8 +37,7 @@ export function showDiagnostics({ values, message, warns }) {
 function power(value) {
   if (value === 0) return '0';
   const exponent = Math.floor(Math.log10(Math.abs(value)));
-  const digits = String(exponent).replace(/[-\d]/g, (d) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(d)]);
-  return `${value < 0 ? '−' : ''}${(Math.abs(value) / 10 ** exponent).toFixed(1)} · 10${digits}`;
+  return `${value < 0 ? '−' : ''}${(Math.abs(value) / 10 ** exponent).toFixed(1)} · 10${raised(exponent)}`;
 }
 
 export function showApproach({ now, next, circle }) {
@@ -73,10 +70,10 @@ export function showContact(last) {
   }
   const { angles, before, after, before_parts: bp, after_parts: ap, normal } = last;
   write('contact-when', `${KINDS[last.kind]} ${last.partner}, at ${last.time.toFixed(3)} s`);
-  write('a-v', angle(angles.v));
-  write('a-n', angle(angles.n));
-  write('a-d', angle(angles.d));
-  write('a-pc', last.isLocked ? angle(angles.pc) : '–');
+  write('a-v', showDegrees(angles.v));
+  write('a-n', showDegrees(angles.n));
+  write('a-d', showDegrees(angles.d));
+  write('a-pc', last.isLocked ? showDegrees(angles.pc) : '–');
   write('s-before', speed(length(before)));
   write('s-after', speed(length(after)));
   const side = [-normal[1], normal[0]];

@@ -104,7 +104,7 @@ export class EnergyPlot {
     c.fillStyle = look.dim;
     c.textAlign = 'left';
     const power = Math.round(Math.log10(decade));
-    c.fillText(`E₀ (1 + ${decade.toExponential(0).replace('e', '·10^').replace('1·', '')})`, 4, y(decade) - 3);
+    c.fillText(`E₀ + 10${raised(power)} E₀`, 4, y(decade) - 3);
     c.fillText('E₀', 4, y(0) - 3);
     c.strokeStyle = look.curve;
     c.lineWidth = 2;
@@ -117,6 +117,6 @@ export class EnergyPlot {
   }
 }
 
-function raised(number) {
+export function raised(number) {
   return String(number).replace(/[-\d]/g, (d) => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(d)]);
 }
