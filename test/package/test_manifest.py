@@ -10,6 +10,7 @@ from installs import PACKAGE, ROOT
 
 # Names of rosdep keys where they are not the names that the code imports.
 KEYS = {
+    'aiohttp': 'python3-aiohttp',
     'numpy': 'python3-numpy',
     'yaml': 'python3-yaml',
     'jsonschema': 'python3-jsonschema',
@@ -20,8 +21,8 @@ KEYS = {
 DISTRIBUTIONS = {'PyYAML': 'yaml'}
 # Used where it is there. Ubuntu 24.04 has no package of it, so there is no rosdep key.
 OPTIONAL = {'numba'}
-# Used without an import: `ros2 launch`.
-COMMANDS = {'ros2launch'}
+# Used without an import: `ros2 launch`, and what it starts.
+COMMANDS = {'ros2launch', 'rviz2'}
 
 
 @pytest.fixture(scope='module')
@@ -79,7 +80,8 @@ def test_the_tests_import_only_what_is_declared(manifest):
 
 def test_pip_installs_the_python_packages_that_rosdep_does(manifest):
     required = re.search(r'install_requires=\[(.*?)\]', (ROOT / 'setup.py').read_text(), re.DOTALL)
-    names = re.findall(r"'([A-Za-z]+)", required[1])
+    viewer = re.search(r"'viewer': \[(.*?)\]", (ROOT / 'setup.py').read_text())
+    names = re.findall(r"'([A-Za-z]+)", required[1] + viewer[1])
     keys = {KEYS[DISTRIBUTIONS.get(name, name)] for name in names}
     assert keys == {key for key in declared(manifest, 'depend') if key.startswith('python3-')}
 

@@ -32,7 +32,7 @@ def lone_viewer(domain, tmp_path_factory):
         end_all([viewer])
 
 
-@pytest.fixture
+@pytest.fixture(scope='module')
 def observer(domain):
     observer = Observer(domain)
     yield observer

@@ -442,6 +442,7 @@ def test_the_overlays_angles_are_those_of_the_kernel(lesson_page, observer):
     bodies = observer.listen(PointCloud2, 'bodies')
     times = observer.listen(TimeReference, 'time')
     observer.collect(bodies, 5)
+    observer.collect(contacts, 5)
     page.locator('#pause').click()
     wait_until(page, "bounce.values.paused === 'true'")
     # A click where the circle is selects it.

@@ -242,11 +242,18 @@ class App {
     }
     const view = {
       camera: this.camera, ratio: this.ratio, look: this.look, mode: this.colourMode, fastest: this.fastest, largest: this.largest,
-      trail: this.trail, world: this.world, story: this.story, path: this.path, squares: find('squares').checked,
+      trail: this.trail, world: this.world, story: this.story, path: this.path, squares: find('squares').checked, untilNext: this.untilNext,
     };
     this.picture.draw(view);
     if (this.afterDraw) this.afterDraw(this);
     this.overlay.draw(view);
+  }
+
+  // Milliseconds of the wall until the selected circle's next contact.
+  get untilNext() {
+    const { next } = this.story;
+    const rate = this.isSlow ? this.timeScale * SLOWDOWN : this.timeScale;
+    return next && rate ? (1000 * next.time) / rate : Infinity;
   }
 
   refreshNumbers(now) {

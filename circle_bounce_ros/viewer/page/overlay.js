@@ -1,9 +1,12 @@
 // The lesson drawn over the picture: what a teacher would draw on the board.
 
 import { bounceAngles, degrees, showDegrees, length, minus, plus, times, unit } from './lesson.js';
+import { clamp } from './camera.js';
 import { squaresThatOverlap } from './story.js';
 
 const MOST_SQUARES = 400;
+const SEEN = 450; // ms that a contact has the picture to itself
+const COMING = 700; // ms of the wall before the next one that belong to that
 const FONT = '600 13px system-ui, sans-serif';
 
 export class Overlay {
@@ -14,7 +17,8 @@ export class Overlay {
     this.corners = null; // what the squares say about the selected circle, or about all
   }
 
-  // view: camera, ratio, look; world, story; trail (s), path of the selected circle; squares (boolean)
+  // view: camera, ratio, look; world, story; trail (s), path of the selected circle; squares (boolean);
+  // untilNext (ms of the wall until the next contact)
   draw(view) {
     const { c, canvas } = this;
     const { world, story } = view;
@@ -35,9 +39,13 @@ export class Overlay {
     if (!story.now) return;
     this.drawPath(view);
     this.drawSelected(view);
+    // The next contact pushes the last one out, but not before that has been seen.
+    const near = story.age < SEEN ? 0 : clamp((COMING - view.untilNext) / 200, 0, 1);
     const fresh = story.freshness;
-    if (story.next && fresh < 0.55) this.drawApproach(view, Math.min(1, (0.55 - fresh) * 5));
-    if (fresh > 0) this.drawContact(view, Math.min(1, fresh * 3));
+    const approach = Math.max(near, clamp((0.55 - fresh) * 5, 0, 1));
+    const contact = clamp(fresh * 3, 0, 1) * (1 - near);
+    if (story.next && approach > 0) this.drawApproach(view, approach);
+    if (contact > 0) this.drawContact(view, contact);
     c.globalAlpha = 1;
   }
 
@@ -137,7 +145,7 @@ export class Overlay {
     const radius = now.radius * camera.scale;
     this.ring(centre, radius + 4, look.halo, 5);
     this.ring(centre, radius + 4, look.text, 2);
-    if (story.freshness < 0.55) this.arrow(centre, this.step([now.vx, now.vy]), look.before);
+    if (story.freshness < 0.55 || story.age > SEEN) this.arrow(centre, this.step([now.vx, now.vy]), look.before);
   }
 
   drawApproach({ story, camera, look }, alpha) {
