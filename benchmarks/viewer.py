@@ -13,8 +13,8 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / 'test/ros'), str(ROOT / 'test/viewer')]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/ros'))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/viewer'))
 
 from playwright.sync_api import sync_playwright
 from viewing import Stage, connected, launch, missing_browser

@@ -5,13 +5,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / 'test/ros'), str(ROOT / 'test/viewer')]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/ros'))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/viewer'))
 
 from playwright.sync_api import sync_playwright
 from viewing import Stage, launch
 
-PICTURES = ROOT / 'docs' / 'pictures'
+PICTURES = Path(__file__).resolve().parents[1] / 'docs' / 'pictures'
 DESK = {'width': 1280, 'height': 800}
 PHONE = {'width': 390, 'height': 844}
 
@@ -29,6 +29,24 @@ new Promise((resolve) => {
 })
 """
 
+# Squares overlap by then, circles do not touch yet.
+STEP_TO_THE_RED_ONE = """
+new Promise((resolve) => {
+  bounce.ask({ type: 'pause', paused: true });
+  bounce.ask({ type: 'reset' });
+  const look = setInterval(() => {
+    const { next } = bounce.story;
+    if (!bounce.paused || !next || bounce.world.seconds > 1) return;
+    if (next.kind !== 'locked' || next.time > 0.06) {
+      bounce.ask({ type: 'step' });
+      return;
+    }
+    clearInterval(look);
+    setTimeout(resolve, 4500);
+  }, 150);
+})
+"""
+
 SHOTS = [
     ('viewer-dark', 'lesson', DESK, 'dark', [STOP_AT_CONTACT]),
     (
@@ -38,10 +56,7 @@ SHOTS = [
         'light',
         [
             "bounce.selectNext(1); document.getElementById('squares').click()",
-            """new Promise((resolve) => { const look = setInterval(() => {
-              const { next } = bounce.story;
-              if (!next || next.kind !== 'locked' || next.time > 0.25 || bounce.story.age < 500) return;
-              clearInterval(look); bounce.ask({ type: 'pause', paused: true }); setTimeout(resolve, 4500); }, 5); })""",
+            STEP_TO_THE_RED_ONE,
         ],
     ),
     ('viewer-gas', 'gas', DESK, 'light', [LET_IT_RUN.format(6000)]),

@@ -47,7 +47,7 @@ def animate(scene_name: str) -> FuncAnimation:
 
     # Without a first call of its own, time would run back to the second.
     return FuncAnimation(
-        figure, show, frames=round(LENGTH * RATE), init_func=lambda: [], cache_frame_data=False
+        figure, show, frames=round(LENGTH * RATE), init_func=list, cache_frame_data=False
     )
 
 

@@ -33,10 +33,18 @@ def lone_viewer(domain, tmp_path_factory):
 
 
 @pytest.fixture(scope='module')
-def observer(domain):
+def shared_observer(domain):
     observer = Observer(domain)
     yield observer
     observer.close()
+
+
+@pytest.fixture
+def observer(shared_observer):
+    """Return an observer that knows the services already, and that hears nothing yet."""
+    yield shared_observer
+    for subscription in list(shared_observer.node.subscriptions):
+        shared_observer.node.destroy_subscription(subscription)
 
 
 @pytest.fixture

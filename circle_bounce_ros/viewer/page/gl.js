@@ -6,7 +6,7 @@ import { IDENTITY, SPEED_RAMP, rgb, table } from './colours.js';
 const LARGEST_POINT = 60; // device pixels
 // A point vanishes when its centre leaves the picture; so what is drawn is larger than the picture by this.
 const BORDER = 64; // device pixels
-const MOST_TRAIL_LINES = 150000;
+const MOST_TRAIL_LINES = 40000;
 const WALL_WIDTH = 2; // CSS pixels
 
 const COMMON = `#version 300 es

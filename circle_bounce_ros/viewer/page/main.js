@@ -12,6 +12,7 @@ import { Story } from './story.js';
 import { World } from './world.js';
 
 const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16, 32];
+const FEW_TRAILS = 64; // circles whose trails can be told apart
 const OWN = '…'; // the entry of the chooser for a file
 const FEW = 8; // circles that are told apart by colour rather than by speed
 const MOST_SAMPLES = 4000; // circles looked at for a histogram
@@ -171,6 +172,16 @@ class App {
     requestAnimationFrame((then) => this.animate(then));
     const passed = now - this.last;
     this.last = now;
+    const { pending } = this;
+    try {
+      this.show(now, passed);
+    } finally {
+      // Only now: what is sent next is then as new as it can be when it is drawn, however long this took.
+      if (pending) this.link.send({ type: 'ack', frame: pending.number });
+    }
+  }
+
+  show(now, passed) {
     const isNew = this.takeFrame();
     if (this.story.circle >= 0 && this.world.cloud) {
       const come = this.story.update(this.world, passed, this.paused);
@@ -190,7 +201,6 @@ class App {
     const frame = this.pending;
     if (!frame) return false;
     this.pending = null;
-    this.link.send({ type: 'ack', frame: frame.number });
     try {
       const goesOn = this.world.setBodies(frame.buffer, frame.start, frame.timeLength);
       if (!goesOn) {
@@ -217,6 +227,7 @@ class App {
     this.picture.setStatic(world);
     this.picture.forget();
     this.path = [];
+    if (!this.trailChosen) this.setTrail(null);
     if (this.story.circle >= 0 && world.rowOf(this.story.circle) < 0) this.select(-1);
     this.fit();
     this.showLegend();
@@ -510,9 +521,11 @@ class App {
     localStorage.setItem('theme', this.theme);
   }
 
+  // null: what suits the scene. Many trails tell nothing and cost much.
   setTrail(seconds) {
-    this.trail = Number(seconds);
-    find('trails').value = String(seconds);
+    this.trailChosen = seconds !== null;
+    this.trail = Number(seconds ?? (CALM.matches || this.world.count > FEW_TRAILS ? 0 : 1));
+    find('trails').value = String(this.trail);
     write('trails-value', this.trail ? `${this.trail} s` : 'off');
     if (!this.trail) this.path = [];
     this.isDirty = true;
@@ -625,7 +638,7 @@ class App {
     });
     this.keyboard.list(find('key-list'));
     find('keys-on').addEventListener('change', () => { this.keyboard.isOn = find('keys-on').checked; });
-    this.setTrail(CALM.matches ? 0 : 1);
+    this.setTrail(null);
   }
 }
 
