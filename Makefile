@@ -2,6 +2,7 @@
 
 PYTHON ?=
 SCENE ?=
+PORT ?=
 ARGS ?=
 
 # Stays on this machine unless the user's environment says otherwise.
@@ -20,7 +21,7 @@ SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(P
 .NOTPARALLEL:
 
 help:
-	@echo 'make run        set up what is needed, start the node   (SCENE=gas ARGS="-p rate:=100.0")'
+	@echo 'make run        set up what is needed, start the node and its live page   (SCENE=gas PORT=8080 ARGS="-p rate:=100.0")'
 	@echo 'make listen     in another terminal: what the node publishes'
 	@echo 'make reset      in another terminal: the scene from its first instant; also make pause, resume, step'
 	@echo 'make set        in another terminal: a parameter, NAME=time_scale VALUE=0.1'
@@ -41,6 +42,7 @@ define NOTICE
 The node publishes the scene $(or $(SCENE),lesson):
   /<circle>/pose and /<circle>/twist of each named circle (in the lesson: /green/pose, /green/twist),
   /poses, /bodies, /contacts, /time, /markers, /markers/static and /diagnostics.
+See it in the browser: the address that bounce_viewer prints below.
 Look at it from another terminal:   make listen
 Start the scene again:              make reset
 With ROS 2 sourced:                 ros2 topic echo /green/pose
@@ -52,7 +54,7 @@ export NOTICE
 
 run: .venv
 	@printf '%s\n' "$$NOTICE"
-	@exec $(BIN)/bounce_node --ros-args $(if $(SCENE),-p 'scene:=$(SCENE)') $(ARGS)
+	@exec $(BIN)/python -S tools/run.py --ros-args $(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(PORT),-p 'port:=$(PORT)') $(ARGS)
 
 listen: .venv
 	@exec $(BIN)/python examples/listen.py $(ARGS)

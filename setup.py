@@ -27,6 +27,7 @@ setup(
     maintainer_email='developers@circle-bounce-ros.example.com',
     python_requires='>=3.10,<3.14',
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
+    package_data={f'{PACKAGE}.viewer': ['page/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml', 'LICENSE']),
@@ -64,6 +65,9 @@ setup(
             'pillow>=10.1',
         ],
         'test-offline': ['pytest>=8', 'mcap-ros2-support>=0.5'],
+        'viewer': ['aiohttp>=3.9'],
+        # Drives the Chromium of the system in the viewer's tests; it downloads none.
+        'browser': ['playwright>=1.45'],
     },
     entry_points={
         'console_scripts': [
@@ -71,6 +75,7 @@ setup(
             'bounce_record = circle_bounce_ros.offline.commands:record_main',
             'bounce_plot = circle_bounce_ros.offline.commands:plot_main',
             'bounce_sweep = circle_bounce_ros.offline.commands:sweep_main',
+            'bounce_viewer = circle_bounce_ros.viewer.main:main',
             'bounce_check = circle_bounce_ros.scene_file.check:check_main',
         ],
     },

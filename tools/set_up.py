@@ -38,7 +38,7 @@ print(json.dumps({
 def packages(environment, ros_sourced):
     """Return what pip has to install into an environment."""
     if environment == '.venv':
-        extras = 'fast,test,check,docs,offline'
+        extras = 'fast,test,check,docs,offline,viewer,browser'
         return ['--editable', '.[{}]'.format(extras if ros_sourced else 'ros,' + extras)]
     if environment == '.venvs/offline':
         return ['--editable', '.[fast,offline,test-offline]']

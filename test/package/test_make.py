@@ -52,6 +52,7 @@ def test_make_run_publishes_within_3_seconds_and_ctrl_c_ends_it_cleanly(
     assert status == -signal.SIGINT, said
     assert '/green/pose' in said
     assert 'make listen' in said
+    assert 'http://127.0.0.1:' in said
     # make reports a child that ends with any status but 0.
     assert 'make:' not in said
     assert 'Traceback' not in said
@@ -70,12 +71,13 @@ def make_says(environment, *words):
             ['SCENE=my/own.yaml', 'ARGS=-p seed:=3'],
             "--ros-args -p 'scene:=my/own.yaml' -p seed:=3",
         ),
+        (['PORT=9000'], "--ros-args -p 'port:=9000'"),
     ],
 )
 def test_make_run_passes_on_the_scene_and_the_arguments(environment, words, command):
     said = make_says(environment, '--dry-run', 'run', *words)
     last = said.splitlines()[-1]
-    assert last.split() == ['exec', '.venv/bin/bounce_node', *command.split()]
+    assert last.split() == ['exec', '.venv/bin/python', '-S', 'tools/run.py', *command.split()]
 
 
 def test_make_help_names_every_command_for_users(environment):

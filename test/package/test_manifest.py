@@ -10,6 +10,7 @@ from installs import PACKAGE, ROOT
 
 # Names of rosdep keys where they are not the names that the code imports.
 KEYS = {
+    'aiohttp': 'python3-aiohttp',
     'numpy': 'python3-numpy',
     'yaml': 'python3-yaml',
     'jsonschema': 'python3-jsonschema',
@@ -25,8 +26,8 @@ DISTRIBUTIONS = {'PyYAML': 'yaml'}
 OPTIONAL = {'numba', 'rosbags', 'mcap', 'pyarrow', 'dask', 'distributed'}
 # Only for the commands that work without ROS.
 FOR_COMMANDS = {'python3-matplotlib', 'python3-pil', 'python3-tqdm'}
-# Used without an import: `ros2 launch`.
-COMMANDS = {'ros2launch'}
+# Used without an import: `ros2 launch`, and what it starts.
+COMMANDS = {'ros2launch', 'rviz2'}
 
 
 @pytest.fixture(scope='module')
@@ -86,7 +87,8 @@ def test_the_tests_import_only_what_is_declared(manifest):
 
 def test_pip_installs_the_python_packages_that_rosdep_does(manifest):
     required = re.search(r'install_requires=\[(.*?)\]', (ROOT / 'setup.py').read_text(), re.DOTALL)
-    names = re.findall(r"'([A-Za-z]+)", required[1])
+    viewer = re.search(r"'viewer': \[(.*?)\]", (ROOT / 'setup.py').read_text())
+    names = re.findall(r"'([A-Za-z]+)", required[1] + viewer[1])
     keys = {KEYS[DISTRIBUTIONS.get(name, name)] for name in names}
     assert keys == {key for key in declared(manifest, 'depend') if key.startswith('python3-')}
 

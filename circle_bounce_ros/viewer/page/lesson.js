@@ -1,0 +1,133 @@
+// The lesson's steps, from what the messages hold: points and vectors are [horizontal, vertical], SI units.
+
+export const KINDS = ['circle', 'locked', 'wall', 'wall end'];
+const CIRCLE = 0;
+
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1];
+export const plus = (a, b) => [a[0] + b[0], a[1] + b[1]];
+export const minus = (a, b) => [a[0] - b[0], a[1] - b[1]];
+export const times = (a, k) => [a[0] * k, a[1] * k];
+export const length = (a) => Math.hypot(a[0], a[1]);
+export const unit = (a) => times(a, 1 / (length(a) || 1));
+
+// Eq. 1.1: the distance between two centres.
+export const distance = (a, b) => length(minus(b, a));
+
+// Eq. 1.5: no root is taken, and touching exactly counts.
+export function inContact(a, ra, b, rb) {
+  const [dh, dv] = minus(b, a);
+  return dh * dh + dv * dv <= (ra + rb) * (ra + rb);
+}
+
+// The cheap alternative, wrong at the corners.
+export function squaresOverlap(a, ra, b, rb) {
+  return Math.abs(b[0] - a[0]) <= ra + rb && Math.abs(b[1] - a[1]) <= ra + rb;
+}
+
+// Eq. 2.1-2.4, radians. The normal points from the moving circle to what it touches.
+export function bounceAngles(velocity, normal) {
+  const v = Math.atan2(velocity[1], velocity[0]);
+  const n = Math.atan2(normal[1], normal[0]);
+  const d = v - n;
+  return { v, n, d, pc: v - 2 * d + Math.PI };
+}
+
+// The new components: the old speed times cosine and sine of A_pc.
+export function reflectByAngles(velocity, normal) {
+  const { pc } = bounceAngles(velocity, normal);
+  const speed = length(velocity);
+  return [speed * Math.cos(pc), speed * Math.sin(pc)];
+}
+
+// The parts of a velocity along the normal (across the surface) and along the surface.
+export function parts(velocity, normal) {
+  const n = unit(normal);
+  const across = times(n, dot(velocity, n));
+  return { across, along: minus(velocity, across) };
+}
+
+// An angle between -180 and 180 degrees.
+export function degrees(radians) {
+  const turns = radians / (2 * Math.PI);
+  return 360 * (turns - Math.round(turns));
+}
+
+export function showDegrees(radians) {
+  return `${degrees(radians).toFixed(1)}°`.replace('-', '−');
+}
+
+// A step's contacts of one circle, taken apart: its velocity before and after each.
+//
+// The messages hold the velocity before the first and after the last. Between them each contact changes it by
+// impulse / mass along its normal, and the mass follows from the whole change. `mass` is what is used when
+// the changes cancel.
+export function takeApart({ circle, before, after, contacts }, mass = null) {
+  const first = [before.vx, before.vy];
+  const last = [after.vx, after.vy];
+  const pushes = contacts.map((c) => times([c.nx, c.ny], c.a === circle ? -c.impulse : c.impulse));
+  const sum = pushes.reduce(plus, [0, 0]);
+  const scale = pushes.reduce((total, push) => total + length(push), 0);
+  const change = minus(last, first);
+  const known = length(sum) > 1e-3 * scale && dot(change, sum) > 0 ? dot(sum, sum) / dot(change, sum) : mass;
+  let velocity = first;
+  return contacts.map((contact, index) => {
+    const isOwn = contact.a === circle;
+    const normal = unit(isOwn ? [contact.nx, contact.ny] : [-contact.nx, -contact.ny]);
+    const was = velocity;
+    if (index === contacts.length - 1) velocity = last;
+    else if (known) velocity = plus(was, times(pushes[index], 1 / known));
+    else if (contact.kind !== CIRCLE) velocity = reflectByAngles(was, normal);
+    return {
+      time: contact.time,
+      kind: contact.kind,
+      partner: isOwn ? contact.b : contact.a,
+      isLocked: contact.kind !== CIRCLE,
+      point: [contact.x, contact.y],
+      normal,
+      before: was,
+      after: velocity,
+      angles: bounceAngles(was, normal),
+      before_parts: parts(was, normal),
+      after_parts: parts(velocity, normal),
+      mass: known,
+    };
+  });
+}
+
+// When two circles first touch, seconds from now: the smaller root, in the form that keeps its digits.
+export function timeToTouch(offset, relative, reach) {
+  const a = dot(relative, relative);
+  const b = dot(offset, relative);
+  const c = dot(offset, offset) - reach * reach;
+  if (b >= 0) return Infinity;
+  if (c <= 0) return 0;
+  const inside = b * b - a * c;
+  return inside > 0 ? c / (Math.sqrt(inside) - b) : Infinity;
+}
+
+// The point of a wall that is nearest to a place.
+export function nearestOnWall([x1, y1, x2, y2], place) {
+  const along = [x2 - x1, y2 - y1];
+  const share = dot(minus(place, [x1, y1]), along) / (dot(along, along) || 1);
+  return plus([x1, y1], times(along, Math.min(1, Math.max(0, share))));
+}
+
+// When a circle first touches a wall or one of its ends, seconds from now.
+export function timeToWall([x1, y1, x2, y2], place, velocity, radius) {
+  const along = [x2 - x1, y2 - y1];
+  const size = length(along);
+  let side = times([-along[1], along[0]], 1 / (size || 1));
+  let gap = dot(minus(place, [x1, y1]), side);
+  if (gap < 0) {
+    side = times(side, -1);
+    gap = -gap;
+  }
+  const closing = -dot(velocity, side);
+  if (size && closing > 0 && gap >= radius * (1 - 1e-6)) {
+    const time = Math.max(0, (gap - radius) / closing);
+    const share = dot(minus(plus(place, times(velocity, time)), [x1, y1]), along) / (size * size);
+    if (share >= 0 && share <= 1) return time;
+  }
+  const ends = [[x1, y1], [x2, y2]].map((end) => timeToTouch(minus(place, end), velocity, radius));
+  return Math.min(...ends);
+}

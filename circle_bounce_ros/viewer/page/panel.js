@@ -1,0 +1,99 @@
+// The words and numbers beside the picture.
+
+import { KINDS, dot, length, showDegrees } from './lesson.js';
+import { metres } from './overlay.js';
+import { raised } from './plots.js';
+
+export const find = (id) => document.getElementById(id);
+
+export function write(id, text) {
+  const element = find(id);
+  if (element.textContent !== text) element.textContent = text;
+}
+
+const speed = (value) => `${value.toFixed(3)} m/s`;
+const signed = (value) => `${value < 0 ? '−' : ''}${Math.abs(value).toFixed(2)}`;
+
+export function showTime(seconds) {
+  if (seconds === null) return 'not known';
+  const whole = Math.floor(seconds);
+  const [h, m, s] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
+  const pad = (value) => String(value).padStart(2, '0');
+  return `${h ? `${h}:` : ''}${pad(m)}:${pad(s)}.${String(Math.floor((seconds - whole) * 1000)).padStart(3, '0')}`;
+}
+
+export function showDiagnostics({ values, message, warns }) {
+  const factor = Number(values['real-time factor']);
+  write('n-factor', Number.isFinite(factor) ? `${factor.toFixed(2)} ×` : 'measuring');
+  write('n-contacts', Math.round(Number(values['contacts/s'])).toLocaleString('en'));
+  write('n-energy', power(Number(values['energy error'])));
+  const paused = values.paused === 'true';
+  write('state', paused ? 'paused' : 'running');
+  find('state').dataset.state = paused ? 'paused' : 'running';
+  write('warning', warns ? `The node warns: ${message}` : '');
+  find('warning').hidden = !warns;
+}
+
+function power(value) {
+  if (value === 0) return '0';
+  const exponent = Math.floor(Math.log10(Math.abs(value)));
+  return `${value < 0 ? '−' : ''}${(Math.abs(value) / 10 ** exponent).toFixed(1)} · 10${raised(exponent)}`;
+}
+
+export function showApproach({ now, next, circle }) {
+  find('lesson').hidden = !now;
+  find('lesson-hint').hidden = Boolean(now);
+  write('selected', circle < 0 ? 'no circle selected' : `circle ${circle}${now ? '' : ' is not there'}`);
+  if (!now) return;
+  if (!next) {
+    for (const id of ['gap-partner', 'gap-d', 'gap-sum', 'gap-time']) write(id, '–');
+    return;
+  }
+  write('gap-name', next.time < Infinity ? 'touches next' : 'nearest');
+  write('gap-partner', next.name);
+  write('gap-d', metres(next.distance));
+  write('gap-sum-name', next.radius ? 'r₁ + r₂' : 'r');
+  write('gap-sum', metres(next.sum));
+  write('gap-time', next.time < Infinity ? `${next.time.toFixed(2)} s` : 'never');
+  const whole = Math.max(next.sum * 3, next.distance);
+  find('gap-reach').style.width = `${(100 * next.sum) / whole}%`;
+  find('gap-distance').style.left = `${(100 * next.distance) / whole}%`;
+}
+
+export function showContact(last) {
+  const dashes = ['a-v', 'a-n', 'a-d', 'a-pc', 's-before', 's-after', 'p-across', 'p-along'];
+  if (!last) {
+    for (const id of dashes) write(id, '–');
+    write('contact-when', '');
+    write('contact-note', '');
+    return;
+  }
+  const { angles, before, after, before_parts: bp, after_parts: ap, normal } = last;
+  write('contact-when', `${KINDS[last.kind]} ${last.partner}, at ${last.time.toFixed(3)} s`);
+  write('a-v', showDegrees(angles.v));
+  write('a-n', showDegrees(angles.n));
+  write('a-d', showDegrees(angles.d));
+  write('a-pc', last.isLocked ? showDegrees(angles.pc) : '–');
+  write('s-before', speed(length(before)));
+  write('s-after', speed(length(after)));
+  const side = [-normal[1], normal[0]];
+  write('p-across', `${signed(dot(bp.across, normal))} → ${signed(dot(ap.across, normal))} m/s`);
+  write('p-along', `${signed(dot(bp.along, side))} → ${signed(dot(ap.along, side))} m/s`);
+  write('contact-note', last.isLocked
+    ? `A_pc = A_v − 2 A_d + 180°. The part across the surface changes sign, the part along it and the speed stay.`
+    : 'Two free circles: the part along the surface stays, the part across is exchanged with the other, so the speed may change and A_pc does not apply.');
+}
+
+export function showSquares(corners) {
+  const say = find('squares-say');
+  if (!corners) {
+    say.hidden = true;
+    return;
+  }
+  say.hidden = false;
+  const first = corners.pairs[0];
+  write('squares-say', first
+    ? `Squares overlap, circles do not touch: D = ${metres(first.distance)} > ${metres(first.sum)}${corners.pairs.length > 1 ? ` (and ${corners.pairs.length - 1} more)` : ''}.`
+    : 'No squares overlap unless their circles touch.');
+  say.classList.toggle('lit', Boolean(first));
+}

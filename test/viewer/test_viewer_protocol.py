@@ -1,0 +1,314 @@
+"""What the viewer says to pages, and whom it does not let in, without a browser."""
+
+import asyncio
+import http.client
+import socket
+import time
+from urllib.parse import urlsplit
+
+import aiohttp
+import pytest
+from observing import NodeProcess
+from sensor_msgs.msg import PointCloud2
+from viewing import PATIENCE, VIEWER, address_of, connected, end_all, run
+
+from circle_bounce_ros.viewer.messages import LARGEST_MESSAGE
+from circle_bounce_ros.viewer.server import PORTS
+
+
+def get(address, path, **headers):
+    """Return status and body of a request, whose path is sent exactly as it is."""
+    parts = urlsplit(address)
+    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=PATIENCE)
+    try:
+        connection.putrequest('GET', path, skip_host=True)
+        for name, value in ({'Host': parts.netloc} | headers).items():
+            connection.putheader(name, value)
+        connection.endheaders()
+        response = connection.getresponse()
+        return response.status, response.read()
+    finally:
+        connection.close()
+
+
+# What pages get
+
+
+def test_a_page_gets_the_bytes_that_the_node_has_published(play, stage, observer):
+    play()
+    heard = []
+    observer.node.create_subscription(PointCloud2, 'bodies', heard.append, 100, raw=True)
+
+    async def look():
+        async with connected(stage.address) as page:
+            frames = []
+            while len(frames) < 20:
+                frames.append(await page.frame())
+                await page.say(type='ack', frame=frames[-1][1])
+            return frames
+
+    # The observer's own executor is not spun meanwhile: its queue keeps the last 100 messages.
+    observer.collect(heard, 1)
+    frames = run(look())
+    wanted = {rest for *_, rest in frames[-5:]}
+    observer.spin_until(lambda: wanted <= set(heard), 'the same bytes')
+    # With each state comes the scene time of the same stamp.
+    assert all(time_message[4:12] == rest[4:12] for *_, time_message, rest in frames[-5:])
+
+
+def test_a_page_that_does_not_draw_gets_one_frame_and_then_the_newest(play, stage):
+    play()
+
+    async def look():
+        async with connected(stage.address) as slow, connected(stage.address) as quick:
+            _, first, *_ = await slow.frame()
+            for _ in range(30):
+                _, newest, *_ = await quick.frame()
+                await quick.say(type='ack', frame=newest)
+            with pytest.raises(asyncio.TimeoutError):
+                await slow.frame(within=0.2)
+            await slow.say(type='ack', frame=first)
+            _, second, *_ = await slow.frame()
+            assert second >= newest
+
+    run(look())
+
+
+def test_a_page_cannot_ask_for_more_by_acknowledging_what_it_never_got(play, stage):
+    play()
+
+    async def look():
+        async with connected(stage.address) as page:
+            await page.frame()
+            await page.say(type='ack', frame=2**53 - 1)
+            await page.frame()
+            with pytest.raises(asyncio.TimeoutError):
+                await page.frame(within=0.2)
+
+    run(look())
+
+
+def test_ten_pages_get_10_000_circles_at_the_pace_of_the_node(play, stage, many):
+    play(many)
+
+    async def count_frames():
+        async with connected(stage.address) as page:
+            began, frames = None, 0
+            while began is None or time.monotonic() < began + 2.0:
+                _, number, *_ = await page.frame()
+                began = began or time.monotonic()
+                await page.say(type='ack', frame=number)
+                frames += 1
+            return frames
+
+    async def look():
+        return await asyncio.gather(*(count_frames() for _ in range(10)))
+
+    # benchmarks/viewer.py measures; a machine that runs other tests as well manages a third of the pace.
+    assert min(run(look())) > 40
+
+
+def test_contacts_are_subscribed_to_only_while_a_circle_is_selected(play, stage, observer):
+    play()
+
+    async def look():
+        async with connected(stage.address) as page:
+            await page.frame()
+            assert observer.node.count_subscribers('contacts') == 0
+            await page.say(type='select', circle=0)
+            story = await page.said(type='contacts')
+            assert story['circle'] == 0
+            assert observer.node.count_subscribers('contacts') == 1
+            await page.say(type='select', circle=-1)
+
+    run(look())
+    observer.spin_until(
+        lambda: observer.node.count_subscribers('contacts') == 0, 'no subscription to contacts'
+    )
+
+
+def test_an_answer_says_in_words_what_the_node_has_refused(play, stage):
+    play()
+
+    async def look():
+        async with connected(stage.address) as page:
+            await page.said(type='hello')
+            await page.frame()
+            await page.say(type='step')
+            answer = await page.said(type='answer', to='step')
+            assert not answer['done']
+            assert 'pause' in answer['text']
+            await page.say(type='scene', scene='nowhere', seed=-1)
+            answer = await page.said(type='answer', to='scene')
+            assert not answer['done']
+            assert 'must be one of billiard, break' in answer['text']
+
+    run(look())
+
+
+def test_without_a_node_the_answer_says_so(lone_viewer):
+    async def look():
+        async with connected(lone_viewer) as page:
+            status = await page.said(type='status')
+            assert status['publishers'] == 0
+            await page.say(type='reset')
+            answer = await page.said(type='answer')
+            assert not answer['done']
+            assert 'is the node running' in answer['text']
+
+    run(look())
+
+
+# Whom it lets in
+
+
+def test_it_listens_on_the_loopback_interface_only(lone_viewer):
+    port = urlsplit(lone_viewer).port
+    with open('/proc/net/tcp') as four, open('/proc/net/tcp6') as six:
+        lines = [line.split() for line in [*four, *six]]
+    listening = [line[1] for line in lines if line[1].endswith(f':{port:04X}') and line[3] == '0A']
+    assert listening == [f'0100007F:{port:04X}']
+
+
+@pytest.mark.parametrize(
+    'headers',
+    [
+        {'Origin': 'http://example.com'},
+        {'Origin': 'null'},
+        {'Origin': 'http://127.0.0.1'},
+        {'Origin': 'http://127.0.0.1:1'},
+        {'Origin': 'https://127.0.0.1:{port}'},
+        {'Origin': 'http://127.0.0.1:{port}.example.com'},
+        {'Host': 'example.com'},
+        {'Host': 'example.com:{port}'},
+        {'Host': '127.0.0.1'},
+        {'Host': '127.0.0.1:{port}.example.com'},
+    ],
+    ids=str,
+)
+def test_a_foreign_origin_or_host_is_refused(lone_viewer, headers):
+    port = urlsplit(lone_viewer).port
+    headers = {name: value.format(port=port) for name, value in headers.items()}
+    for path in ('/', '/socket'):
+        assert get(lone_viewer, path, **headers)[0] == 403
+
+    async def look():
+        with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+            async with connected(lone_viewer, **headers):
+                pass
+        assert refused.value.status == 403
+
+    run(look())
+
+
+def test_a_socket_without_an_origin_is_refused(lone_viewer):
+    assert get(lone_viewer, '/socket')[0] == 403
+
+
+def test_both_names_of_this_machine_are_served(lone_viewer):
+    port = urlsplit(lone_viewer).port
+    for name in ('127.0.0.1', 'localhost'):
+        host = f'{name}:{port}'
+        assert get(lone_viewer, '/', Host=host, Origin=f'http://{host}')[0] == 200
+
+
+@pytest.mark.parametrize(
+    'path',
+    [
+        '/../main.py',
+        '/%2e%2e/main.py',
+        '/..%2fmain.py',
+        '/./../server.py',
+        '//etc/passwd',
+        '/page/index.html',
+        '/main.js/../../server.py',
+        '/index.html%00.js',
+        '/\\..\\server.py',
+        '/INDEX.HTML',
+        '/server.py',
+        '/.',
+    ],
+)
+def test_only_its_own_files_are_served(lone_viewer, path):
+    status, body = get(lone_viewer, path)
+    assert status in (400, 404)
+    assert b'import' not in body
+    assert b'root:' not in body
+
+
+@pytest.mark.parametrize(
+    ('message', 'code'),
+    [
+        ('no JSON', aiohttp.WSCloseCode.POLICY_VIOLATION),
+        ('{"type": "shutdown"}', aiohttp.WSCloseCode.POLICY_VIOLATION),
+        ('{"type": "reset", "extra": 1}', aiohttp.WSCloseCode.POLICY_VIOLATION),
+        (b'\x00', aiohttp.WSCloseCode.POLICY_VIOLATION),
+        ('x' * (LARGEST_MESSAGE + 1), aiohttp.WSCloseCode.MESSAGE_TOO_BIG),
+    ],
+)
+def test_who_says_anything_else_is_disconnected_and_the_others_stay(lone_viewer, message, code):
+    async def look():
+        async with connected(lone_viewer) as bad, connected(lone_viewer) as good:
+            send = bad.socket.send_str if isinstance(message, str) else bad.socket.send_bytes
+            await send(message)
+            while (await bad.socket.receive(timeout=PATIENCE)).type not in (
+                aiohttp.WSMsgType.CLOSE,
+                aiohttp.WSMsgType.CLOSED,
+            ):
+                pass
+            assert bad.socket.close_code == code
+            await good.said(type='status')
+
+    run(look())
+
+
+# The process
+
+
+def test_a_port_in_use_makes_it_take_the_next_one_and_say_so(domain, tmp_path):
+    with socket.socket() as taken:
+        taken.bind(('127.0.0.1', 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        viewer = NodeProcess(tmp_path / 'log', '-p', f'port:={port}', program=VIEWER)
+        try:
+            assert port < urlsplit(address_of(viewer)).port < port + PORTS
+            assert f'port {port}' in viewer.log
+        finally:
+            end_all([viewer])
+
+
+def test_without_a_free_port_it_ends_with_a_sentence(domain, tmp_path):
+    taken = []
+    try:
+        port = 20000
+        while len(taken) < PORTS:
+            taken.append(socket.socket())
+            try:
+                taken[-1].bind(('127.0.0.1', port + len(taken) - 1))
+                taken[-1].listen()
+            except OSError:
+                port += len(taken)
+                while taken:
+                    taken.pop().close()
+        viewer = NodeProcess(tmp_path / 'log', '-p', f'port:={port}', program=VIEWER)
+        assert viewer.wait() == 1
+        assert f'bounce_viewer: ports {port} to {port + 8} of 127.0.0.1' in viewer.log
+        assert 'Traceback' not in viewer.log
+    finally:
+        for each in taken:
+            each.close()
+
+
+def test_ctrl_c_ends_it_with_pages_open(stage):
+
+    async def look():
+        async with connected(stage.address) as page:
+            await page.frame()
+            began = time.monotonic()
+            status = await asyncio.to_thread(stage.viewer.end)
+            # Pages that do not say goodbye, as this one does not, cannot hold it up.
+            assert time.monotonic() - began < 10.0
+            assert status == 0
+
+    run(look())

@@ -1,0 +1,80 @@
+"""Contacts and states, brought together by stamp."""
+
+import json
+
+import numpy as np
+import pytest
+
+from circle_bounce_ros.encoding import BodiesEncoder, ContactsEncoder
+from circle_bounce_ros.kernel import CONTACT, ContactKind
+from circle_bounce_ros.viewer.cloud import read_cloud, stamp_of
+from circle_bounce_ros.viewer.witness import Witness
+
+BODIES = BodiesEncoder('world', [3, 5], [0.1, 0.2])
+CONTACTS = ContactsEncoder('world')
+
+
+def bodies(stamp_ns, speed):
+    return BODIES.encode(stamp_ns, [[1, 2], [3, 4]], [[speed, 0], [0, speed]])
+
+
+def contacts(stamp_ns, *rows):
+    log = np.zeros(len(rows), CONTACT)
+    for entry, (a, b, kind) in zip(log, rows, strict=True):
+        entry['a'], entry['b'], entry['kind'], entry['nx'], entry['time'] = a, b, kind, 1.0, 0.1
+    return CONTACTS.encode(stamp_ns, log)
+
+
+@pytest.fixture
+def witness():
+    return Witness()
+
+
+def test_a_cloud_is_read_as_it_was_written():
+    stamp_ns = 12 * 10**9 + 34
+    message = BODIES.encode(stamp_ns, [[1.5, -2.5], [3.0, 4.0]], [[0.5, 0.25], [-1.0, 8.0]])
+    cloud = read_cloud(message)
+    assert cloud.stamp_ns == stamp_of(message) == stamp_ns
+    assert cloud.points['id'].tolist() == [3, 5]
+    assert cloud.points['x'].tolist() == [1.5, 3.0]
+    assert cloud.points['vy'].tolist() == [0.25, 8.0]
+    assert cloud.points['radius'].tolist() == [np.float32(0.1), np.float32(0.2)]
+
+
+@pytest.mark.parametrize('cut', [0, 3, 30, 100, 250])
+def test_a_cloud_that_is_cut_short_is_refused(cut):
+    with pytest.raises(ValueError, match=r'cloud|buffer'):
+        read_cloud(bodies(1, 1.0)[:cut])
+
+
+def test_the_velocities_are_those_of_the_ticks_before_and_at_the_contact(witness):
+    for stamp, speed in ((10, 1.0), (20, 2.0), (30, 3.0)):
+        witness.see(bodies(stamp, speed))
+    witness.hear(contacts(20, (5, 0, ContactKind.WALL)))
+    (text,) = witness.take({5})[5]
+    story = json.loads(text)
+    assert (story['before']['vy'], story['after']['vy']) == (1.0, 2.0)
+    assert [row['kind'] for row in story['contacts']] == [ContactKind.WALL]
+
+
+def test_contacts_wait_for_the_state_of_their_tick(witness):
+    witness.see(bodies(10, 1.0))
+    witness.hear(contacts(20, (3, 5, ContactKind.CIRCLE)))
+    assert witness.take({3, 5}) == {}
+    witness.see(bodies(20, 2.0))
+    assert witness.take({3, 5}).keys() == {3, 5}
+    assert witness.take({3, 5}) == {}
+
+
+def test_the_number_of_a_wall_is_not_taken_for_a_circle(witness):
+    witness.see(bodies(10, 1.0))
+    witness.see(bodies(20, 2.0))
+    witness.hear(contacts(20, (3, 5, ContactKind.WALL)))
+    assert witness.take({5}) == {}
+
+
+def test_a_contact_whose_ticks_were_missed_is_not_told_wrongly(witness):
+    witness.see(bodies(30, 3.0))
+    witness.hear(contacts(20, (3, 5, ContactKind.CIRCLE)))
+    witness.hear(contacts(30, (3, 5, ContactKind.CIRCLE)))
+    assert witness.take({3, 5}) == {}

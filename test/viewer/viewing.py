@@ -1,0 +1,150 @@
+"""What tests of the viewer share."""
+
+import asyncio
+import importlib.util
+import json
+import re
+import shutil
+import struct
+import time
+from contextlib import asynccontextmanager
+
+import aiohttp
+from observing import NodeProcess
+
+from circle_bounce_ros.installation import child_environment
+
+PATIENCE = 20.0  # s; only a fault takes that long
+VIEWER = ('-m', 'circle_bounce_ros.viewer.main')
+BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
+FLAGS = [
+    '--no-sandbox',
+    '--enable-unsafe-swiftshader',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+    '--no-first-run',
+    '--disable-default-apps',
+    # A name that somebody else owns and lets point to this machine.
+    '--host-resolver-rules=MAP rebound.example.com 127.0.0.1',
+]
+
+
+def find_browser():
+    return next((path for name in BROWSERS if (path := shutil.which(name))), None)
+
+
+def missing_browser():
+    """Return why there can be no tests in a browser, empty when there can."""
+    if importlib.util.find_spec('playwright') is None:
+        return 'Playwright is not installed (pip install playwright)'
+    if find_browser() is None:
+        return f'no Chromium on the path: none of {", ".join(BROWSERS)} (apt install chromium)'
+    return ''
+
+
+def launch(playwright):
+    return playwright.chromium.launch(
+        executable_path=find_browser(), args=FLAGS, env=child_environment()
+    )
+
+
+def address_of(viewer):
+    """Return what the viewer says its address is, once it does."""
+    deadline = time.monotonic() + PATIENCE
+    while not (found := re.search(r'http://127\.0\.0\.1:\d+', viewer.log)):
+        assert viewer.process.poll() is None, viewer.log
+        assert time.monotonic() < deadline, f'no address within {PATIENCE} s: {viewer.log}'
+    return found[0]
+
+
+class Stage:
+    """A node and a viewer that several tests share, because each takes seconds to start."""
+
+    def __init__(self, folder):
+        self._folder = folder
+        self._count = 0
+        self.node = self.viewer = self.address = None
+
+    def _log(self):
+        self._count += 1
+        return self._folder / f'log{self._count}'
+
+    def start_node(self, *arguments):
+        self.node = NodeProcess(self._log(), *arguments)
+
+    def start_viewer(self):
+        port = self.address.rpartition(':')[2] if self.address else 0
+        self.viewer = NodeProcess(self._log(), '-p', f'port:={port}', program=VIEWER)
+        self.address = address_of(self.viewer)
+
+    def end(self):
+        end_all([self.viewer, self.node])
+
+
+def end_all(processes):
+    """End processes as Ctrl-C does; each must end well."""
+    for process in processes:
+        if process.process.poll() is None:
+            try:
+                status = process.end()
+            finally:
+                if process.process.poll() is None:
+                    process.process.kill()
+                    process.wait()
+            assert status == 0, process.log
+        assert 'Traceback' not in process.log, process.log
+
+
+class ProtocolClient:
+    """A page without a browser: speaks what the page speaks."""
+
+    def __init__(self, socket):
+        self.socket = socket
+        self.texts = []
+
+    async def say(self, **message):
+        await self.socket.send_str(json.dumps(message))
+
+    async def next(self, within=PATIENCE):
+        """Return the next message: a dict for text, (kind, number, time, rest) for a frame."""
+        message = await self.socket.receive(timeout=within)
+        if message.type is aiohttp.WSMsgType.TEXT:
+            said = json.loads(message.data)
+            self.texts.append(said)
+            return said
+        assert message.type is aiohttp.WSMsgType.BINARY, message
+        kind, number, length = struct.unpack_from('<III', message.data)
+        end = 12 + length + -length % 4
+        return kind, number, message.data[12 : 12 + length], message.data[end:]
+
+    async def frame(self, within=PATIENCE):
+        """Return the next frame of bodies."""
+        return await self.until(lambda m: isinstance(m, tuple) and m[0] == 1, within)
+
+    async def said(self, **parts):
+        """Return the next text with these parts."""
+        return await self.until(lambda m: isinstance(m, dict) and parts.items() <= m.items())
+
+    async def until(self, is_it, within=PATIENCE):
+        deadline = time.monotonic() + within
+        while True:
+            message = await self.next(max(0.01, deadline - time.monotonic()))
+            if is_it(message):
+                return message
+
+
+@asynccontextmanager
+async def connected(address, **headers):
+    """`async with connected(address) as page`: a ProtocolClient."""
+    async with (
+        aiohttp.ClientSession() as session,
+        session.ws_connect(
+            f'{address}/socket', headers={'Origin': address} | headers, max_msg_size=0
+        ) as socket,
+    ):
+        yield ProtocolClient(socket)
+
+
+def run(work):
+    return asyncio.run(asyncio.wait_for(work, 3 * PATIENCE))
