@@ -181,7 +181,9 @@ class Box2D(Contestant):
         import Box2D as box2d
 
         super().__init__(scene)
-        speed = float(np.sqrt(np.mean([c.velocity[0] ** 2 + c.velocity[1] ** 2 for c in self.moving])))
+        speed = float(
+            np.sqrt(np.mean([c.velocity[0] ** 2 + c.velocity[1] ** 2 for c in self.moving]))
+        )
         smallest = min(circle.radius for circle in self.moving)
         wanted = self.WANTED / speed * smallest
         scale = self._scale = min(max(wanted, self.SMALLEST), self.LARGEST) / smallest

@@ -30,7 +30,9 @@ Maker = Callable[[Scene], Contestant]
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='small and quick, to see that it runs')
+    parser.add_argument(
+        '--short', action='store_true', help='small and quick, to see that it runs'
+    )
     parser.add_argument('--into', type=Path, default=results.FOLDER)
     arguments = parser.parse_args()
     pace = SHORT if arguments.short else LONG
@@ -99,9 +101,7 @@ def among_locked(pace: Pace, settings: dict[str, str]) -> list[Row]:
             ]
             rows += beside(name, scene, rivals, pace, settings)
     scene = scenes.one_ball()
-    rows += beside(
-        'one ball, one locked circle, a box', scene, [(Pymunk, 1.5, 3)], pace, settings
-    )
+    rows += beside('one ball, one locked circle, a box', scene, [(Pymunk, 1.5, 3)], pace, settings)
     return rows
 
 
@@ -124,7 +124,15 @@ def beside(
     settings.update({one.name: one.settings for one in everybody})
     costs = in_turn([frames_of(one) for one in everybody], pace)
     return [
-        row(name, rival.name, ratios(cost, costs[0]), 'x faster', least, aim, note=per_frame(cost, costs[0]))
+        row(
+            name,
+            rival.name,
+            ratios(cost, costs[0]),
+            'x faster',
+            least,
+            aim,
+            note=per_frame(cost, costs[0]),
+        )
         for rival, cost, (_, least, aim) in zip(everybody[1:], costs[1:], rivals, strict=True)
     ]
 
@@ -144,9 +152,7 @@ def frames_of(one: Contestant) -> Work:
     return work
 
 
-def beside_billiards(
-    name: str, scene: Scene, pace: Pace, settings: dict[str, str]
-) -> list[Row]:
+def beside_billiards(name: str, scene: Scene, pace: Pace, settings: dict[str, str]) -> list[Row]:
     """Return the line of the exact peer, whose frames take seconds."""
     ours, theirs = Ours(scene), Billiards(scene)
     settings[theirs.name] = theirs.settings

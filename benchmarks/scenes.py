@@ -159,7 +159,11 @@ class Room:
         self._cells.setdefault(self._cell(*place), []).append((*place, radius))
 
     def find(
-        self, box: tuple[Point, Point], radius: float, chance: random.Random, fits: Rule | None = None
+        self,
+        box: tuple[Point, Point],
+        radius: float,
+        chance: random.Random,
+        fits: Rule | None = None,
     ) -> Point:
         """Return a random place in a box where a circle touches no other, and that a rule allows."""
         (left, bottom), (right, top) = box
