@@ -108,6 +108,14 @@ def random_scene(kind, seed):
     raise AssertionError(kind)
 
 
+def two_levels(seed):
+    """Return a scene of large circles among so many small ones that each get cells of their own."""
+    rng = random.Random(f'two levels {seed}')
+    circles = place(rng, 5, [2.0, 1.7], 10.0, speed=3.0)
+    circles += place(rng, 280, [0.1], 10.0, taken=circles)
+    return Scene(circles, box(-10, -10, 10, 10))
+
+
 def _clear_of(walls, circle):
     """Is the circle further than its radius from points along each wall, closely spaced?"""
     return all(

@@ -198,12 +198,12 @@ def test_a_circle_comes_back_from_far_outside():
     On the way back it is in no cell of the grid: the locked circle must find it all the same.
     """
     speed = 2.01
-    light = Circle((11.0, 0.0), (-speed, 0.0), radius=0.5)
-    heavy = Circle((12.5, 0.0), (1.0, 0.0), radius=0.5, mass=1e12)
+    light = Circle((20.0, 0.0), (-speed, 0.0), radius=0.5)
+    heavy = Circle((21.5, 0.0), (1.0, 0.0), radius=0.5, mass=1e12)
     simulation, world = plain(Scene([light, heavy, locked(0.0, 0.0)]), record_contacts=True)
-    first = 10.0 / speed
-    meeting = (12.5 - 1.0 - 1.0 + speed * first) / (speed - 1.0)
-    place = 12.5 + meeting - 1.0
+    first = 19.0 / speed
+    meeting = (21.5 - 1.0 - 1.0 + speed * first) / (speed - 1.0)
+    place = 21.5 + meeting - 1.0
     home = meeting + (place - 1.0) / (speed - 2.0)
     simulation.advance_to(meeting + 1.0)
     assert is_away(world, 0)

@@ -4,7 +4,7 @@ import random
 
 import numpy as np
 import pytest
-from random_scenes import KINDS, place, random_scene
+from random_scenes import KINDS, place, random_scene, two_levels
 from referee import CIRCLE, WALL, Fault, replay
 
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, Simulation, Wall
@@ -43,6 +43,21 @@ def test_the_random_scenes_have_contacts_of_every_kind():
     assert kinds == {int(kind) for kind in ContactKind}
 
 
+def test_every_contact_is_the_earliest_possible_one_on_two_levels_of_cells():
+    scene = two_levels(0)
+    assert Simulation(scene)._driver.world.levels == 2
+    assert replay(scene, contacts_of(scene, 2.0), 2.0) > 150
+
+
+def test_referee_catches_an_engine_whose_large_circles_look_no_further_than_small_ones(
+    monkeypatch,
+):
+    monkeypatch.setattr(grid, 'FAR', grid.NEAR)
+    scene = two_levels(0)
+    with pytest.raises(Fault):
+        replay(scene, contacts_of(scene, 10.0, compiled=False), 10.0)
+
+
 @pytest.fixture
 def honest():
     scene = random_scene('box', 0)
@@ -78,7 +93,7 @@ def test_referee_catches_a_forged_contact(honest, field, change):
 
 
 def test_referee_catches_an_engine_that_looks_in_its_own_cell_only(monkeypatch):
-    def short_sighted(world, table, cell, side, count):
+    def short_sighted(world, table, cell, side, reach, count):
         at = table.slot + table.room * cell
         members = world.filled[table.first + cell]
         world.near[count : count + members] = world.slots[at : at + members]

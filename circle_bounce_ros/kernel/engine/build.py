@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN
+from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN, FAR, NEAR
 from circle_bounce_ros.kernel.engine.records import (
     CELL,
     FLAT,
@@ -40,11 +40,15 @@ PATIENCE = 1000
 PATIENCE_PER_CIRCLE = 100
 CROWD_RADII = 1e-9
 
-# In a thin scene cells grow to this fraction of the mean spacing: fewer borders to cross.
-CELLS_PER_SPACING = 0.5
+# In a thin scene cells grow to this fraction of the mean gap between circles: fewer borders to cross.
+CELLS_PER_GAP = 0.7
 
 # A level is split off for smaller circles where nine of its cells would hold more than this many.
 CROWDED = 32
+
+# Its cells, in largest radii, are then as narrow as they can be with guests of up to an eighth of their width.
+COARSE = 8.0 / 7.0
+GUEST = 1.0 / 8.0
 
 # No more cells than this along the longer side: memory.
 MOST_CELLS_A_SIDE = 4096
@@ -63,7 +67,7 @@ def build(scene: Scene, keep_log: bool) -> World:
     widths = _widths(moving['radius'], x1 - x0, y1 - y0, scene.moving_circles_collide)
     tables, around = _tables(widths, x1 - x0, y1 - y0)
     levels = len(widths)
-    moving['level'] = np.searchsorted(widths, 2.0 * moving['radius'] * (1.0 + CELL_MARGIN))
+    moving['level'] = np.searchsorted(tables['fits'][:levels], moving['radius'])
     cells, post_numbers, flat_numbers = _enter_locked(tables[:levels], posts, flats, x0, y0)
     filled, slots = _enter_moving(tables, moving, x0, y0, scene.moving_circles_collide)
 
@@ -74,7 +78,9 @@ def build(scene: Scene, keep_log: bool) -> World:
     state['crowd_ends'] = -NEVER
     state['keep_log'] = keep_log
     travel = _typical_speed(moving) / float(moving['radius'].min())
-    far = max(x1 - x0, y1 - y0, 2.0 * float(widths[-1]))
+    # A cell of home may end a width beyond it; who is away must be a diameter further.
+    widest = 2.0 * float(moving['radius'].max())
+    far = max(x1 - x0, y1 - y0, float(widths[-1]) + widest * (1.0 + CELL_MARGIN))
     return World(
         moving=moving,
         posts=posts,
@@ -192,51 +198,71 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
     Return the widths of the cells of each level, finest first, each a power of two times the finest.
 
     One level serves all circles unless nine of its cells would hold more than CROWDED of them; then
-    the circles that fit into cells a quarter as wide get a level of their own, and so on.
+    the circles that are small for its cells get a level of their own, and so on.
     """
     area = width * height
 
     def least(fitting: Array) -> float:
-        spacing = CELLS_PER_SPACING * math.sqrt(area / len(fitting))
         widest = 2.0 * float(fitting.max()) * (1.0 + CELL_MARGIN)
-        return max(widest, spacing, max(width, height) / MOST_CELLS_A_SIDE)
+        gap = math.sqrt(area / len(fitting)) - widest
+        return max(widest, CELLS_PER_GAP * gap, max(width, height) / MOST_CELLS_A_SIDE)
 
     widths = [least(radii)]
     while collide and 9.0 * widths[-1] ** 2 * len(radii) > CROWDED * area:
-        radii = radii[2.0 * radii * (1.0 + CELL_MARGIN) <= widths[-1] / 4.0]
-        if len(radii) == 0 or least(radii) > widths[-1] / 4.0:
+        needed = COARSE * float(radii.max()) * (1.0 + CELL_MARGIN) ** 2
+        needed = max(needed, max(width, height) / MOST_CELLS_A_SIDE)
+        coarse = widths[-1]
+        if len(widths) == 1:
+            coarse = needed
+        elif coarse / 2.0 >= needed:
+            coarse /= 2.0
+        radii = radii[radii * (1.0 + CELL_MARGIN) <= GUEST * coarse]
+        if len(radii) == 0 or least(radii) > coarse / 2.0:
             break
-        finer = widths[-1] / 4.0
+        finer = coarse / 2.0
         while finer / 2.0 >= least(radii):
             finer /= 2.0
+        widths[-1] = coarse
         widths.append(finer)
     return np.array(widths[::-1])
 
 
 def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
-    """Return the tables of residents and of guests, without members, and each level's neighbours."""
+    """Return the tables of residents and of guests, without members, and each level's cells in reach."""
     levels = len(widths)
     tables = np.zeros(2 * levels, TABLE)
-    around = []
+    around: list[int] = []
     for number, table in enumerate(tables):
         level = number % levels
         columns, rows = (max(1, math.ceil(side / widths[level])) for side in (width, height))
-        # Four cells a side at least, so that nine have nine lists; the finest level has no guests.
+        # Eight cells a side at least, so that five times five have a list each; the finest level has no guests.
         bits = [
-            max(2, (cells - 1).bit_length()) if number != levels else 0
+            max(2 if level == 0 else 3, (cells - 1).bit_length()) if number != levels else 0
             for cells in (columns, rows)
         ]
         table['width'] = widths[level]
         table['shift'] = round(math.log2(widths[level] / widths[0]))
         table['bits'], table['mask'] = bits[0], (1 << sum(bits)) - 1
         table['columns'], table['rows'] = columns, rows
-        table['around'] = 21 * level
         if number < levels:
-            row = 1 << bits[0]
-            left, right = [-1 - row, -1, -1 + row], [1 - row, 1, 1 + row]
-            down, up = [-1 - row, -row, 1 - row], [-1 + row, row, 1 + row]
-            around += [*left, *right, *down, *up, *left, -row, 0, row, *right]
+            guest = tables['fits'][level - 1] if level > 0 else 0.0
+            share = 1.0 if level > 0 else 0.5
+            table['fits'] = share * widths[level] / (1.0 + CELL_MARGIN) - guest
+            if level + 1 < levels:
+                table['fits'] = min(table['fits'], GUEST * widths[level + 1])
+            table['around'] = len(around)
+            around += [*_offsets(NEAR, 1 << bits[0]), *_offsets(FAR, 1 << bits[0])]
+        else:
+            table['around'] = tables['around'][level]
     return tables, np.array(around, np.int64)
+
+
+def _offsets(reach: int, row: int) -> list[int]:
+    """Return the offsets of the cells in reach: those behind the left, right, lower, upper side, and all."""
+    steps = range(-reach, reach + 1)
+    behind = [[side * reach + step * row for step in steps] for side in (-1, 1)]
+    behind += [[side * reach * row + step for step in steps] for side in (-1, 1)]
+    return [*sum(behind, []), *(x + y * row for x in steps for y in steps)]
 
 
 def _enter_moving(
@@ -281,7 +307,8 @@ def _enter_moving(
 
 def _scratch(tables: Array, count: int) -> Array:
     """Return room for all that `grid.gather` may write."""
-    return np.zeros(9 * int(tables['room'].sum()) + 2 * count + 2, np.int32)
+    most = (2 * FAR + 1) ** 2
+    return np.zeros(most * int(tables['room'].sum()) + 2 * count + 2, np.int32)
 
 
 def _enter_locked(
@@ -310,7 +337,7 @@ def _enter_locked(
 
 def _cells_near_post(table: Array, post: Array, x0: float, y0: float) -> list[int]:
     half = float(table['width']) / 2.0
-    reach = float(post['radius']) + half * (1.0 + 1e-6)  # far more than rounding
+    reach = float(post['radius']) + float(table['fits']) * (1.0 + 1e-6)  # far more than rounding
     px, py = float(post['x']), float(post['y'])
     column, row, x, y = _cells(table, (px, px), (py, py), reach, x0, y0)
     beyond = np.hypot(
@@ -321,7 +348,7 @@ def _cells_near_post(table: Array, post: Array, x0: float, y0: float) -> list[in
 
 def _cells_near_flat(table: Array, flat: Array, x0: float, y0: float) -> list[int]:
     half = float(table['width']) / 2.0
-    reach = half * (1.0 + 1e-6)
+    reach = float(table['fits']) * (1.0 + 1e-6)
     sx, sy, nx, ny, length = (float(flat[name]) for name in ('x', 'y', 'nx', 'ny', 'length'))
     xs, ys = sorted((sx, sx + length * ny)), sorted((sy, sy - length * nx))
     column, row, x, y = _cells(table, xs, ys, reach, x0, y0)

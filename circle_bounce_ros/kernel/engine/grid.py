@@ -3,8 +3,9 @@ Who is near: square cells, on a level for every class of size.
 
 The plane is cut into cells without end, once for every level; a cell of a coarser level is 2^shift cells of the
 finest wide, so that its borders are borders of all finer levels too. A circle is a resident on the level whose
-cells it fits in, `(column, row)` is its cell there, and a guest on every coarser level. Two circles can touch only
-when their cells on the level of the larger one are the same or neighbours.
+cells it fits in, `(column, row)` is its cell there, and a guest on every coarser level. Two circles of different
+levels can touch only when their cells on the coarser one are the same or neighbours; two residents of the finest
+level likewise. Residents of a coarser level are large for their cells and may touch across one cell in between.
 
 Each cell has a list. A cell's number is cut to its low bits, so that far-away cells share a list: that costs a
 look at circles which are not near and changes no result. Lists have room for so many; when one is full the caller
@@ -23,9 +24,15 @@ from typing import Any
 from circle_bounce_ros.kernel.engine.records import DOWN, EVERYWHERE, LEFT, Record, World
 from circle_bounce_ros.kernel.impact import NEVER
 
-# Cells are wider than their circles by this fraction, so that rounding cannot put two circles that touch
-# into cells that are no neighbours.
+# Cells are wider than they need be by this fraction, so that rounding cannot put two circles that touch out
+# of each other's reach.
 CELL_MARGIN = 1e-9
+
+# How many cells on: neighbours, and those behind them.
+NEAR, FAR = 1, 2
+
+# Of a cell's neighbours, three behind each side and all nine; what is far comes behind them in `world.around`.
+CELLS_AROUND_NEAR = 21
 
 
 def place_at(circle: Record, time: float) -> tuple[Any, Any]:
@@ -75,7 +82,7 @@ def settle(world: World, i: int, x: float, y: float) -> bool:
     """Enter circle i, which is in no list, in those of its place; False, and nothing changed, if one is full."""
     circle = world.moving[i]
     level = 0
-    while world.tables[level].width < 2.0 * circle.radius * (1.0 + CELL_MARGIN):
+    while world.tables[level].fits < circle.radius:
         level += 1
     own = world.tables[level]
     column = math.floor((x - world.x0) / own.width)
@@ -209,23 +216,27 @@ def gather(world: World, circle: Record, side: int) -> int:
     if circle.level == world.levels:
         return gather_everyone(world)
     own = world.tables[circle.level]
-    count = gather_around(world, own, circle.cell, side, 0)
-    if circle.level > 0:
+    if circle.level == 0:
+        count = gather_around(world, own, circle.cell, side, NEAR, 0)
+    else:
+        count = gather_around(world, own, circle.cell, side, FAR, 0)
         guests = world.tables[world.levels + circle.level]
-        count = gather_around(world, guests, circle.cell, side, count)
+        count = gather_around(world, guests, circle.cell, side, NEAR, count)
     for coarser in range(circle.level + 1, world.levels):
         table = world.tables[coarser]
         up = table.shift - own.shift
         if side == EVERYWHERE or is_border(circle, side, up):
             cell = list_number(table, circle.column >> up, circle.row >> up)
-            count = gather_around(world, table, cell, side, count)
+            count = gather_around(world, table, cell, side, NEAR, count)
     if world.state[0].away > 0 and is_on_porch(own, circle):
         count = gather_away(world, count)
     return count
 
 
-def gather_around(world: World, table: Record, cell: int, side: int, count: int) -> int:
-    """Append the lists of the nine cells around one, or of the three behind the side it was entered through."""
+def gather_around(
+    world: World, table: Record, cell: int, side: int, reach: int, count: int
+) -> int:
+    """Append the lists of the cells in reach of one, or of the row that came into it through a side."""
     near = world.near
     slots = world.slots
     filled = world.filled
@@ -233,10 +244,11 @@ def gather_around(world: World, table: Record, cell: int, side: int, count: int)
     slot = table.slot
     room = table.room
     mask = table.mask
-    begin = table.around + 3 * side
-    end = begin + 3
+    row = 2 * reach + 1
+    begin = table.around + (reach - 1) * CELLS_AROUND_NEAR + row * side
+    end = begin + row
     if side == EVERYWHERE:
-        end = begin + 9
+        end = begin + row * row
     for k in range(begin, end):
         number = (cell + world.around[k]) & mask
         members = filled[first + number]

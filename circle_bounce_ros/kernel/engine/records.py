@@ -42,6 +42,7 @@ CELL = np.dtype([(name, 'i4') for name in ('first_post', 'end_post', 'first_flat
 # One level of the grid, or the guests on it: see `grid`.
 TABLE = np.dtype(
     [('width', 'f8')]  # of a cell, m
+    + [('fits', 'f8')]  # the radius of the largest resident, m
     + [('shift', 'i8')]  # its cells are 2^shift cells of the finest level wide
     + [('bits', 'i8'), ('mask', 'i8')]  # of the number of a list
     + [('first', 'i8'), ('slot', 'i8'), ('room', 'i8')]  # its first list and slot; slots per list
@@ -86,7 +87,7 @@ class World(NamedTuple):
     filled: Any  # how many circles are in each list
     slots: Any  # the lists
     near: Any  # scratch: who is in reach
-    around: Any  # of each level, offsets to 3 cells behind each side and to all 9
+    around: Any  # of each level, offsets to the cells behind each side and to all, for a reach of 1 and of 2
     away: Any  # the circles that are in no cell
     post_numbers: Any
     flat_numbers: Any
