@@ -163,7 +163,7 @@ def test_levels_of_cells_change_no_bit(kind, monkeypatch):
     scene = random_scene(kind, 6)
     ordinary = contacts_of(scene, duration(kind))
     monkeypatch.setattr(build, 'CROWDED', 0.01)
-    monkeypatch.setattr(build, 'CELLS_PER_SPACING', 0.1)
+    monkeypatch.setattr(build, 'CELLS_PER_GAP', 0.1)
     many = Simulation(scene, record_contacts=True, compiled=False)
     if kind in ('mixed', 'sizes'):
         assert many._driver.world.levels >= 2
@@ -186,7 +186,7 @@ def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
     scene = Scene(circles, [Wall((-11.0, -11.0), (-11.0, 11.0))])
     ordinary = contacts_of(scene, 3.0, compiled=compiled)
     monkeypatch.setattr(build, 'LOG_BLOCK', 7)
-    monkeypatch.setattr(build, 'CELLS_PER_SPACING', 2.0)
+    monkeypatch.setattr(build, 'CELLS_PER_GAP', 3.0)
     simulation = Simulation(scene, record_contacts=True, compiled=compiled)
     before = len(simulation._driver.world.slots)
     simulation.advance_to(3.0)
