@@ -76,7 +76,7 @@ def _among_circles(bodies: Bodies, allowed: float) -> Overlap:
     left = left[order]
     right = position[:, 0] + radius
     best = NONE
-    first = np.arange(len(order))
+    first: NDArray[np.intp] = np.arange(len(order))
     step = 0
     while True:
         step += 1

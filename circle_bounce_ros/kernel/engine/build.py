@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -262,7 +263,8 @@ def _offsets(reach: int, row: int) -> list[int]:
     steps = range(-reach, reach + 1)
     behind = [[side * reach + step * row for step in steps] for side in (-1, 1)]
     behind += [[side * reach * row + step for step in steps] for side in (-1, 1)]
-    return [*sum(behind, []), *(x + y * row for x in steps for y in steps)]
+    everywhere = [x + y * row for x in steps for y in steps]
+    return [*itertools.chain(*behind), *everywhere]
 
 
 def _enter_moving(
