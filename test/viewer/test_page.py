@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from observing import nanoseconds, read_points, scene_times
 from sensor_msgs.msg import PointCloud2, TimeReference
-from viewing import PATIENCE, launch, missing_browser
+from viewing import PATIENCE, drive, launch, missing_browser
 
 from circle_bounce_ros import kernel
 
@@ -47,9 +47,7 @@ READ_BACK = """
 
 @pytest.fixture(scope='module')
 def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
+    with drive() as playwright:
         browser = launch(playwright)
         yield browser
         browser.close()
@@ -495,6 +493,9 @@ def test_the_overlays_angles_are_those_of_the_kernel(lesson_page, observer):
             'the contact, on the topic',
         )
         stamp = nanoseconds(message.header.stamp)
+        observer.spin_until(
+            lambda stamp=stamp: nanoseconds(bodies[-1].header.stamp) >= stamp, 'its state'
+        )
         before = max(
             (m for m in bodies if nanoseconds(m.header.stamp) < stamp),
             key=lambda m: nanoseconds(m.header.stamp),

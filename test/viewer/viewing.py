@@ -1,6 +1,7 @@
 """What tests of the viewer share."""
 
 import asyncio
+import importlib
 import importlib.util
 import json
 import re
@@ -41,6 +42,12 @@ def missing_browser():
     if find_browser() is None:
         return f'no Chromium on the path: none of {", ".join(BROWSERS)} (apt install chromium)'
     return ''
+
+
+def drive():
+    """Return the context manager that makes a Playwright."""
+    # Not an import statement: there is no ROS package of it to be declared.
+    return importlib.import_module('playwright.sync_api').sync_playwright()
 
 
 def launch(playwright):
