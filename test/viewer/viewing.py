@@ -87,10 +87,11 @@ class Stage:
 
     def end(self):
         end_all([self.viewer, self.node])
+        assert 'Traceback' not in self.viewer.log, self.viewer.log
 
 
 def end_all(processes):
-    """End processes as Ctrl-C does; each must end well."""
+    """End processes as Ctrl-C does; each must end with status 0."""
     for process in processes:
         if process.process.poll() is None:
             try:
@@ -100,7 +101,6 @@ def end_all(processes):
                     process.process.kill()
                     process.wait()
             assert status == 0, process.log
-        assert 'Traceback' not in process.log, process.log
 
 
 class ProtocolClient:
