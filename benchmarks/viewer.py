@@ -16,8 +16,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/ros'))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/viewer'))
 
-from playwright.sync_api import sync_playwright
-from viewing import Stage, connected, launch, missing_browser
+from viewing import Stage, connected, drive, launch, missing_browser
 
 from circle_bounce_ros.viewer.cloud import stamp_of
 
@@ -137,7 +136,7 @@ def main():
             show(stage, folder, count)
             stage.start_viewer()
             try:
-                with sync_playwright() as playwright:
+                with drive() as playwright:
                     browser = launch(playwright)
                     measure_page(stage, browser, seconds, count)
                     browser.close()

@@ -8,8 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/ros'))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/viewer'))
 
-from playwright.sync_api import sync_playwright
-from viewing import Stage, launch
+from viewing import Stage, drive, launch
 
 PICTURES = Path(__file__).resolve().parents[1] / 'docs' / 'pictures'
 DESK = {'width': 1280, 'height': 800}
@@ -69,7 +68,7 @@ def main() -> None:
     into = Path(sys.argv[1]) if len(sys.argv) > 1 else PICTURES
     into.mkdir(parents=True, exist_ok=True)
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+    with tempfile.TemporaryDirectory() as folder, drive() as playwright:
         browser = launch(playwright)
         for name, scene, size, scheme, acts in SHOTS:
             stage = Stage(Path(folder))

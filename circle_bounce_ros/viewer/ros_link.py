@@ -26,8 +26,8 @@ from visualization_msgs.msg import MarkerArray
 
 FIRST_PORT = 8080
 
-# Only the newest state is worth showing, but every contact is part of the story.
-NEWEST = QoSProfile(depth=1)
+# Every contact is part of the story, and so is the state before it. Pages get the newest state only.
+FEW = QoSProfile(depth=5)
 ALL = QoSProfile(depth=100)
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -72,7 +72,7 @@ class RosLink:
         self._contacts: Subscription | None = None
         # The time of a tick is published first and taken first.
         self._listen('time', TimeReference, 'time', ALL)
-        self._listen('bodies', PointCloud2, 'bodies', NEWEST)
+        self._listen('bodies', PointCloud2, 'bodies', FEW)
         self._listen('static', MarkerArray, 'markers/static', LATCHED)
         self._node.create_subscription(
             DiagnosticArray, '/diagnostics', self._on_diagnostics, QoSProfile(depth=10)

@@ -7,6 +7,7 @@ from collections import deque
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel import ContactKind
 from circle_bounce_ros.viewer.cloud import Cloud, read_cloud, stamp_of
@@ -23,7 +24,7 @@ class Witness:
     Brings `bodies` and `contacts` together by stamp.
 
     A page may miss messages, and the velocity before a contact is in the one before: so this is done
-    where all of them come by.
+    where all of them come by. What a circle touched between two states that came belongs to these two.
     """
 
     def __init__(self) -> None:
@@ -35,10 +36,8 @@ class Witness:
         self._bodies.append(bodies)
 
     def hear(self, contacts: bytes) -> None:
-        """Take note of a serialized `contacts` message."""
-        cloud = read_cloud(contacts)
-        if len(cloud.points):
-            self._contacts.append(cloud)
+        """Take note of a serialized `contacts` message; there is one each tick, often without any."""
+        self._contacts.append(read_cloud(contacts))
 
     def take(self, circles: set[int]) -> dict[int, list[str]]:
         """
@@ -56,25 +55,26 @@ class Witness:
 
         """
         said: dict[int, list[str]] = {}
-        while self._contacts and self._bodies:
-            contacts = self._contacts[0]
-            stamps = [stamp_of(message) for message in self._bodies]
-            if max(stamps) < contacts.stamp_ns:
+        while len(self._bodies) > 1 and self._contacts:
+            then, now = stamp_of(self._bodies[0]), stamp_of(self._bodies[1])
+            # More contacts may be on their way. A clock that jumped back is waited for in vain.
+            if self._contacts[-1].stamp_ns < now and then < now:
                 break
-            self._contacts.popleft()
-            if contacts.stamp_ns not in stamps[1:]:
+            first = self._bodies.popleft()
+            between = [cloud.points for cloud in self._contacts if then < cloud.stamp_ns <= now]
+            if not any(map(len, between)):
                 continue
-            now = stamps.index(contacts.stamp_ns)
-            before, after = read_cloud(self._bodies[now - 1]), read_cloud(self._bodies[now])
+            before, after = read_cloud(first), read_cloud(self._bodies[0])
             for circle in circles:
-                story = _story(circle, before, after, contacts)
+                story = _story(circle, before, after, np.concatenate(between))
                 if story:
                     said.setdefault(circle, []).append(json.dumps(story))
         return said
 
 
-def _story(circle: int, before: Cloud, after: Cloud, contacts: Cloud) -> dict[str, Any] | None:
-    points = contacts.points
+def _story(
+    circle: int, before: Cloud, after: Cloud, points: NDArray[np.void]
+) -> dict[str, Any] | None:
     second = points['kind'] == ContactKind.CIRCLE
     own = points[(points['a'] == circle) | (second & (points['b'] == circle))]
     places = [_place(circle, cloud) for cloud in (before, after)]

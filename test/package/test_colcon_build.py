@@ -27,7 +27,7 @@ def sourced(colcon_install, *command):
     return ['sh', '-c', line, 'sh', *(str(word) for word in command)]
 
 
-@pytest.mark.parametrize('name', ['bounce_node', 'bounce_check'])
+@pytest.mark.parametrize('name', ['bounce_node', 'bounce_viewer', 'bounce_check'])
 def test_ros2_run_finds_the_executables(prefix, name):
     executable = prefix / 'lib' / PACKAGE / name
     assert executable.is_file()

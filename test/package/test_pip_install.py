@@ -42,7 +42,17 @@ def test_the_package_finds_its_files(installed, tmp_path):
 def test_the_console_scripts_are_on_the_path(installed, tmp_path):
     _, folder, tree = installed
     assert (folder / 'bin/bounce_node').is_file()
+    assert (folder / 'bin/bounce_viewer').is_file()
     run(folder / 'bin/bounce_check', tree / 'config/scenes/lesson.yaml', cwd=tmp_path)
+
+
+def test_the_files_of_the_live_page_are_installed(installed, tmp_path):
+    _, folder, _ = installed
+    where = 'import circle_bounce_ros.viewer as v; print(v.__path__[0])'
+    page = Path(run(folder / 'bin/python', '-c', where, cwd=tmp_path).strip()) / 'page'
+    here = ROOT / PACKAGE / 'viewer/page'
+    assert (here / 'index.html').is_file()
+    assert {path.name for path in page.iterdir()} == {path.name for path in here.iterdir()}
 
 
 def test_ament_finds_a_package_that_pip_has_installed(installed):

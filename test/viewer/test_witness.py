@@ -78,3 +78,24 @@ def test_a_contact_whose_ticks_were_missed_is_not_told_wrongly(witness):
     witness.hear(contacts(20, (3, 5, ContactKind.CIRCLE)))
     witness.hear(contacts(30, (3, 5, ContactKind.CIRCLE)))
     assert witness.take({3, 5}) == {}
+
+
+def test_contacts_of_a_tick_whose_state_was_missed_belong_to_the_states_around_it(witness):
+    witness.see(bodies(10, 1.0))
+    witness.hear(contacts(20, (3, 0, ContactKind.WALL)))
+    witness.hear(contacts(30, (3, 5, ContactKind.CIRCLE)))
+    assert witness.take({3}) == {}
+    witness.see(bodies(30, 3.0))
+    (text,) = witness.take({3})[3]
+    story = json.loads(text)
+    assert [row['kind'] for row in story['contacts']] == [ContactKind.WALL, ContactKind.CIRCLE]
+    assert (story['before']['vx'], story['after']['vx']) == (1.0, 3.0)
+
+
+def test_a_clock_that_jumps_back_stops_nothing(witness):
+    said = []
+    for stamp in (100, 110, 10, 20):
+        witness.see(bodies(stamp, 1.0))
+        witness.hear(contacts(stamp, (3, 0, ContactKind.WALL)))
+        said += witness.take({3}).get(3, [])
+    assert len(said) == 2

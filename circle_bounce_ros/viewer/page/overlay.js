@@ -166,7 +166,9 @@ export class Overlay {
     this.line(own, plus(own, times(towards, now.radius * camera.scale)), look.after, 3.5);
     if (next.radius) this.line(other, minus(other, times(towards, next.radius * camera.scale)), look.after, 3.5);
     const middle = times(plus(own, other), 0.5);
-    const aside = plus(middle, times([-towards[1], towards[0]], Math.abs(towards[0]) > 0.5 ? 20 : 64));
+    // Above the line, or to its side where it is steep.
+    const side = times([-towards[1], towards[0]], towards[0] > 0 ? -1 : 1);
+    const aside = plus(middle, times(side, Math.abs(towards[0]) > 0.5 ? 46 : 74));
     this.label(`D = ${metres(next.distance)}`, aside, look.text);
     this.label(`${next.radius ? 'r₁ + r₂' : 'r'} = ${metres(next.sum)}`, plus(aside, [0, 18]), look.after);
     c.globalAlpha = 1;
