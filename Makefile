@@ -15,14 +15,15 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 	command -v $$p && break; done)
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
-.PHONY: help set-up run listen reset check clean distclean
+.PHONY: help set-up run listen reset pause resume step set check clean distclean
 .PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest
 .NOTPARALLEL:
 
 help:
 	@echo 'make run        set up what is needed, start the node   (SCENE=gas ARGS="-p rate:=100.0")'
 	@echo 'make listen     in another terminal: what the node publishes'
-	@echo 'make reset      in another terminal: the scene from its first instant'
+	@echo 'make reset      in another terminal: the scene from its first instant; also make pause, resume, step'
+	@echo 'make set        in another terminal: a parameter, NAME=time_scale VALUE=0.1'
 	@echo 'make test       everything that CI runs'
 	@echo 'make check      ruff, mypy and import contracts only'
 	@echo 'make set-up     only make the environments that run and test need'
@@ -56,8 +57,11 @@ run: .venv
 listen: .venv
 	@exec $(BIN)/python examples/listen.py $(ARGS)
 
-reset: .venv
-	@exec $(BIN)/python examples/control.py reset $(ARGS)
+reset pause resume step: .venv
+	@exec $(BIN)/python examples/control.py $@ $(ARGS)
+
+set: .venv
+	@exec $(BIN)/python examples/control.py set '$(NAME)' '$(VALUE)' $(ARGS)
 
 check: .venv
 	$(BIN)/ruff check .
