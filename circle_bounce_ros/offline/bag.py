@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shutil
+import struct
 from collections.abc import Callable, Collection, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, Message, Schema
+from mcap.records import Channel, Chunk, DataEnd, Message, Schema
 from mcap.stream_reader import StreamReader
 from rosbags.interfaces import (
     Connection,
@@ -270,7 +271,9 @@ def _readable(path: Path) -> Iterator[tuple[Schema, Channel, Message, int]]:
 
 
 def _records(reader: StreamReader) -> Iterator[object]:
-    try:
-        yield from reader.records
-    except (McapError, EOFError):
-        return  # here it was cut
+    # Up to where it was cut, however the library says so: a record that is too short, or one of nothing.
+    with suppress(McapError, EOFError, struct.error, ValueError):
+        for record in reader.records:
+            if isinstance(record, DataEnd):
+                return  # what follows is index
+            yield record

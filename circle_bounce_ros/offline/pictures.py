@@ -80,8 +80,10 @@ def view_of(source: Source) -> Window:
             )
     if not scene.walls or np.ptp(np.array(spots), axis=0).min() == 0.0:
         # Nothing keeps the circles in: show where they go.
+        radii = np.array([[circle.radius] for circle in source.moving])
         for frame in source.frames():
-            spots += [tuple(frame.positions.min(axis=0)), tuple(frame.positions.max(axis=0))]
+            spots.append(tuple((frame.positions - radii).min(axis=0)))
+            spots.append(tuple((frame.positions + radii).max(axis=0)))
     low, high = np.array(spots).min(axis=0), np.array(spots).max(axis=0)
     rim = 0.02 * float((high - low).max())
     left, bottom = (low - rim).tolist()
@@ -108,11 +110,13 @@ def trajectories(source: Source) -> Picture:
     if last is None or len(ways) < 2:
         raise SourceError(f'{source.name}: must have at least two instants, got {len(ways)}')
     radii = np.array([circle.radius for circle in source.moving])
-    draw_circles(axes, last, radii, MOVING_FILL, MOVING)
+    rest = np.setdiff1d(np.arange(count), chosen)
+    draw_circles(axes, last[rest], radii[rest], '#F4F4F4', '#C8C8C8')
+    draw_circles(axes, last[chosen], radii[chosen], MOVING_FILL, MOVING)
     path = np.array(ways)
     for k in range(len(chosen)):
         color = CYCLE[k % len(CYCLE)]
-        axes.plot(path[:, k, 0], path[:, k, 1], color=color, linewidth=1.0, alpha=0.9, zorder=3)
+        axes.plot(path[:, k, 0], path[:, k, 1], color=color, linewidth=1.4, zorder=3)
         axes.plot(*path[0, k], 'o', color=color, markersize=4.0, zorder=4)
     plane(axes, view)
     some = f'the ways of {len(chosen)} of {count} circles' if len(chosen) < count else 'all ways'
