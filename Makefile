@@ -15,24 +15,28 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 	command -v $$p && break; done)
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
-.PHONY: help set-up run listen reset check test test-kernel test-bare-kernel test-rest clean distclean
+.PHONY: help set-up run listen reset pause resume step set check clean distclean
+.PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-rest
 .NOTPARALLEL:
 
 help:
 	@echo 'make run        set up what is needed, start the node   (SCENE=gas ARGS="-p rate:=100.0")'
 	@echo 'make listen     in another terminal: what the node publishes'
-	@echo 'make reset      in another terminal: the scene from its first instant'
+	@echo 'make reset      in another terminal: the scene from its first instant; also make pause, resume, step'
+	@echo 'make set        in another terminal: a parameter, NAME=time_scale VALUE=0.1'
 	@echo 'make test       everything that CI runs'
 	@echo 'make check      ruff, mypy and import contracts only'
+	@echo 'make bench      the engine and the node beside others: docs/benchmarks, 20 minutes'
+	@echo 'make bench-long a run of 10^9 contacts, 10 minutes;   make bench-soak   memory, 10 minutes'
 	@echo 'make set-up     only make the environments that run and test need'
 	@echo 'make clean      remove what tests and builds leave'
 	@echo 'make distclean  remove the environments too'
 	@echo 'Each takes PYTHON=..., the Python 3.10-3.13 to use, for example make PYTHON=python3.12 run'
 
-set-up: .venv .venvs/kernel .venvs/colcon
+set-up: .venv .venvs/kernel .venvs/colcon .venvs/bench
 
-.PHONY: .venv .venvs/kernel .venvs/colcon
-.venv .venvs/kernel .venvs/colcon:
+.PHONY: .venv .venvs/kernel .venvs/colcon .venvs/bench
+.venv .venvs/kernel .venvs/colcon .venvs/bench:
 	$(SET_UP) $@
 
 define NOTICE
@@ -55,8 +59,11 @@ run: .venv
 listen: .venv
 	@exec $(BIN)/python examples/listen.py $(ARGS)
 
-reset: .venv
-	@exec $(BIN)/python examples/control.py reset $(ARGS)
+reset pause resume step: .venv
+	@exec $(BIN)/python examples/control.py $@ $(ARGS)
+
+set: .venv
+	@exec $(BIN)/python examples/control.py set '$(NAME)' '$(VALUE)' $(ARGS)
 
 check: .venv
 	$(BIN)/ruff check .
@@ -64,19 +71,36 @@ check: .venv
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: set-up check test-kernel test-bare-kernel test-rest
+test: set-up check test-kernel test-compiled-kernel test-bare-kernel test-rest
 	@echo 'make test: PASSED'
 
-# Branch coverage, measured by the kernel's own tests.
+# Branch coverage of the plain engine, measured by the kernel's own tests.
 test-kernel: .venv
-	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel
+	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel --engine plain
+
+test-compiled-kernel: .venv
+	$(BIN)/python -m pytest test/kernel --engine compiled
 
 # The same tests where there is nothing but numpy and pytest: no ROS, no YAML, no compiler.
 test-bare-kernel: .venvs/kernel
 	env -u PYTHONPATH .venvs/kernel/bin/python -m pytest test/kernel
 
-test-rest: .venv .venvs/kernel .venvs/colcon
+test-rest: .venv .venvs/kernel .venvs/colcon .venvs/bench
 	$(BIN)/python -m pytest --ignore=test/kernel
+
+# The node first: nothing else is at work then.
+bench: .venv .venvs/bench
+	$(BIN)/python -m benchmarks.node
+	.venvs/bench/bin/python -m benchmarks.engine
+	.venvs/bench/bin/python -m benchmarks.report
+
+bench-long: .venvs/bench
+	.venvs/bench/bin/python -m benchmarks.long_run
+	.venvs/bench/bin/python -m benchmarks.report
+
+bench-soak: .venv .venvs/bench
+	$(BIN)/python -m benchmarks.node --soak 600
+	.venvs/bench/bin/python -m benchmarks.report
 
 clean:
 	rm -rf build install log out .coverage .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

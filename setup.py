@@ -53,6 +53,8 @@ setup(
             'types-jsonschema',
         ],
         'docs': ['matplotlib>=3.8'],
+        # Who the engine is compared with, and what draws the comparison.
+        'bench': ['pymunk>=7.0', 'box2d==2.3.10', 'billiards==0.5.0', 'matplotlib>=3.8'],
     },
     entry_points={
         'console_scripts': [

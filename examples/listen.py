@@ -7,6 +7,7 @@ Print where a circle is and how fast it goes, as the node says it.
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 
 import rclpy
@@ -26,6 +27,7 @@ def parse() -> argparse.Namespace:
 
 def main() -> int:
     options = parse()
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `| head` ends it without a traceback
     poses = 0
 
     def print_pose(message: PoseStamped) -> None:

@@ -151,9 +151,8 @@ class Scene:
             raise SceneError('restart_after', f'must be > 0 s, got {self.restart_after}')
         object.__setattr__(self, 'restart_after', restart_after)
         if all(circle.locked for circle in self.circles):
-            raise SceneError(
-                'circles', f'at least one must move, got {len(self.circles)}, all locked'
-            )
+            got = f'{len(self.circles)}, all locked' if self.circles else 'none'
+            raise SceneError('circles', f'at least one must move, got {got}')
         self._check_names()
         self._check_overlaps()
 

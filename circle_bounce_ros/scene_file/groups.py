@@ -25,7 +25,7 @@ def fill(
     """
     Return the circles of a group.
 
-    Drawn in this order: all radii, all positions, all velocities.
+    Drawn in this order: all radii (none when they are equal), all positions, all velocities.
 
     Parameters
     ----------
@@ -70,30 +70,28 @@ def fill(
 
 def _radii(group: dict[str, Any], area: float, draw: Draw) -> list[float]:
     """Return the radius of each circle, largest first: they find room while there is most of it."""
+    count = int(group.get('count', 0))
+    covered = group.get('packing', 0.0) * area
     if 'radius' not in group:
-        count = int(group['count'])
-        return [math.sqrt(group['packing'] * area / (count * math.pi))] * count
+        return [math.sqrt(covered / (count * math.pi))] * count
     smallest, largest = _range(group['radius'])
-    if 'count' in group:
-        count = int(group['count'])
-        return sorted(
-            (chance.uniform(draw, smallest, largest) for _ in range(count)), reverse=True
-        )
-    covered = group['packing'] * area
-    _check_count(covered, smallest, largest)
+    if not count:
+        _check_count(covered, smallest, largest)
     if smallest == largest:
-        return [largest] * round(covered / (math.pi * largest * largest))
-    return sorted(_radii_that_cover(covered, smallest, largest, draw), reverse=True)
+        return [largest] * (count or max(1, round(covered / (math.pi * largest * largest))))
+    if count:
+        radii = [chance.uniform(draw, smallest, largest) for _ in range(count)]
+    else:
+        radii = _radii_that_cover(covered, smallest, largest, draw)
+    return sorted(radii, reverse=True)
 
 
 def _range(radius: float | list[float]) -> tuple[float, float]:
-    if not isinstance(radius, list):
-        return radius, radius
-    smallest, largest = radius
+    smallest, largest = radius if isinstance(radius, list) else (radius, radius)
     if not smallest <= largest:
         rule = f'must be >= radius[0], which is {shown(smallest)} m'
         raise SceneError('radius[1]', f'{rule}, got {shown(largest)}')
-    return smallest, largest
+    return float(smallest), float(largest)
 
 
 def _check_count(covered: float, smallest: float, largest: float) -> None:

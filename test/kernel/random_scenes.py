@@ -5,7 +5,18 @@ import random
 
 from circle_bounce_ros.kernel import Circle, Scene, Wall
 
-KINDS = ('box', 'tilted', 'mixed', 'open', 'thin', 'pass_through', 'ends', 'fast', 'dense')
+KINDS = (
+    'box',
+    'tilted',
+    'mixed',
+    'open',
+    'thin',
+    'pass_through',
+    'ends',
+    'fast',
+    'dense',
+    'sizes',
+)
 
 
 def box(x0, y0, x1, y1):
@@ -88,6 +99,12 @@ def random_scene(kind, seed):
         speeds = [(rng.random() - 0.5, rng.random() - 0.5) for _ in places]
         circles = [Circle(p, v, radius=1.0) for p, v in zip(places, speeds, strict=True)]
         return Scene(circles, box(-9.2, -9.2, 9.2, 9.2))
+    if kind == 'sizes':
+        # So many small ones to a large one that the grid has a level for each.
+        circles = place(rng, 1, [2.5], 5.7)
+        circles += place(rng, 110, [0.12], 5.7, taken=circles)
+        circles += place(rng, 3, [0.4], 5.7, locked=True, taken=circles)
+        return Scene(circles, regular_polygon(5 + seed % 3, 7.2, rng.random()))
     raise AssertionError(kind)
 
 

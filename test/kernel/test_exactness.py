@@ -114,8 +114,8 @@ def test_reset_is_a_fresh_start():
 def test_a_fixed_run_has_the_same_bits_on_every_python_and_machine():
     """A change of this hash changes what users have recorded: it needs a reason in the CHANGELOG."""
     digest = hashlib.sha256()
-    for kind in KINDS:
-        simulation = Simulation(random_scene_without_libm(kind), record_contacts=True)
+    for seed in range(9):
+        simulation = Simulation(random_scene_without_libm(seed), record_contacts=True)
         simulation.advance_to(30.0)
         assert simulation.contact_count > 200
         digest.update(state_of(simulation) + simulation.drain_contacts().tobytes())
@@ -125,9 +125,9 @@ def test_a_fixed_run_has_the_same_bits_on_every_python_and_machine():
 PINNED = '7b7e4b49556bccce7138d6d175d7c996652bb652c216ad9c73b56cc22b699234'
 
 
-def random_scene_without_libm(kind):
+def random_scene_without_libm(seed):
     """Return a scene from divisions and sums only: sines differ between libraries in the last digit."""
-    rng = random.Random(KINDS.index(kind))
+    rng = random.Random(seed)
     circles = [
         Circle(
             (2.5 * i - 8.0, 2.5 * j - 8.0),
@@ -144,7 +144,7 @@ def random_scene_without_libm(kind):
         Wall((-9.75, 8.0), (-8.0, 9.75)),
         Wall((8.5, 9.0), (9.5, 8.25)),
     ]
-    return Scene(circles, walls, moving_circles_collide=kind != 'pass_through')
+    return Scene(circles, walls, moving_circles_collide=seed != 5)
 
 
 @pytest.mark.parametrize('speed', [1.0, 60_000.0])

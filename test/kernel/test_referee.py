@@ -1,12 +1,14 @@
 """A referee that knows neither grid nor queue accepts every contact of random scenes, and catches planted faults."""
 
+import random
+
 import numpy as np
 import pytest
-from random_scenes import KINDS, random_scene, two_levels
+from random_scenes import KINDS, place, random_scene, two_levels
 from referee import CIRCLE, WALL, Fault, replay
 
-from circle_bounce_ros.kernel import ContactKind, Scene, Simulation
-from circle_bounce_ros.kernel.engine import grid, loop, plan
+from circle_bounce_ros.kernel import Circle, ContactKind, Scene, Simulation, Wall
+from circle_bounce_ros.kernel.engine import build, grid, loop, plan
 from circle_bounce_ros.kernel.engine.records import NOTHING
 
 
@@ -19,7 +21,7 @@ def contacts_of(scene, until, **options):
 
 
 def duration(kind):
-    return {'fast': 0.05, 'dense': 3.0}.get(kind, 20.0)
+    return {'fast': 0.05, 'dense': 3.0, 'sizes': 4.0}.get(kind, 20.0)
 
 
 @pytest.mark.parametrize('kind', KINDS)
@@ -148,6 +150,50 @@ def test_the_grid_changes_no_bit(kind, monkeypatch):
     without.advance_to(until)
     assert with_grid.tobytes() == without.drain_contacts().tobytes()
     assert (with_grid['kind'] == CIRCLE).any() == (kind != 'pass_through')
+
+
+def test_the_random_scenes_have_several_levels_of_cells():
+    scene = random_scene('sizes', 0)
+    assert Simulation(scene, compiled=False)._driver.world.levels == 2
+
+
+@pytest.mark.parametrize('kind', KINDS)
+def test_levels_of_cells_change_no_bit(kind, monkeypatch):
+    """As many levels as sizes allow, against those that are worth their while."""
+    scene = random_scene(kind, 6)
+    ordinary = contacts_of(scene, duration(kind))
+    monkeypatch.setattr(build, 'CROWDED', 0.01)
+    monkeypatch.setattr(build, 'CELLS_PER_GAP', 0.1)
+    many = Simulation(scene, record_contacts=True, compiled=False)
+    if kind in ('mixed', 'sizes'):
+        assert many._driver.world.levels >= 2
+    many.advance_to(duration(kind))
+    assert ordinary.tobytes() == many.drain_contacts().tobytes()
+
+
+@pytest.mark.parametrize('compiled', [False, True])
+def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
+    """A cloud falls in on itself: cells fill up far beyond what they held at the start."""
+    if compiled:
+        pytest.importorskip(
+            'numba', reason='numba is not installed: there is only the plain engine'
+        )
+    rng = random.Random(8)
+    circles = [
+        Circle(c.position, (-c.position[0], -c.position[1]), radius=c.radius)
+        for c in place(rng, 150, [0.5] + [0.05] * 30, 10.0)
+    ]
+    scene = Scene(circles, [Wall((-11.0, -11.0), (-11.0, 11.0))])
+    ordinary = contacts_of(scene, 3.0, compiled=compiled)
+    monkeypatch.setattr(build, 'LOG_BLOCK', 7)
+    monkeypatch.setattr(build, 'CELLS_PER_GAP', 2.0)
+    simulation = Simulation(scene, record_contacts=True, compiled=compiled)
+    before = len(simulation._driver.world.slots)
+    simulation.advance_to(3.0)
+    assert len(simulation._driver.world.slots) > before
+    contacts = simulation.drain_contacts()
+    assert contacts.tobytes() == ordinary.tobytes()
+    assert replay(scene, contacts, 3.0) > 100
 
 
 @pytest.mark.parametrize('kind', KINDS)

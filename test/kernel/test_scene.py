@@ -215,7 +215,7 @@ def test_a_scene_carries_what_others_want_to_know():
 @pytest.mark.parametrize(
     ('arguments', 'message'),
     [
-        ({'circles': []}, 'circles: at least one must move, got 0, all locked'),
+        ({'circles': []}, 'circles: at least one must move, got none'),
         (
             {'circles': [locked(0, 0), locked(5, 0)]},
             'circles: at least one must move, got 2, all locked',

@@ -69,6 +69,10 @@ class Machine:
     def calls(self):
         return self.calls_file.read_text().splitlines() if self.calls_file.exists() else []
 
+    @property
+    def set_ups(self):
+        return sum(call.startswith('-m venv') for call in self.calls)
+
 
 @pytest.fixture
 def machine(tmp_path):
@@ -136,17 +140,23 @@ def test_another_python_on_the_path_serves_when_python3_does_not(machine):
 def test_pypi_brings_ros_where_none_is_sourced(machine):
     machine.python('python3')
     machine.set_up()
-    venv, pip = machine.calls
+    venv, pip, _ = machine.calls
     assert '--system-site-packages' not in venv
-    assert pip.endswith('--editable .[ros,test,check,docs]')
+    assert pip.endswith('--editable .[ros,fast,test,check,docs]')
 
 
 def test_a_sourced_ros_is_used_as_it_is(machine):
     machine.python('python3', rclpy=True, machine='aarch64')
     assert machine.set_up(ROS_DISTRO='jazzy')[0] == 0
-    venv, pip = machine.calls
+    venv, pip, _ = machine.calls
     assert '--system-site-packages' in venv
-    assert pip.endswith('--editable .[test,check,docs]')
+    assert pip.endswith('--editable .[fast,test,check,docs]')
+
+
+def test_the_engine_is_compiled_ahead(machine):
+    machine.python('python3')
+    machine.set_up()
+    assert 'compile_ahead()' in machine.calls[-1]
 
 
 def test_the_kernels_environment_has_numpy_and_pytest_and_nothing_of_the_system(machine):
@@ -193,7 +203,7 @@ def test_a_change_of_what_is_to_be_installed_sets_up_again(machine, name):
     with (machine.tree / name).open('a') as file:
         file.write('\n')
     machine.set_up()
-    assert len(machine.calls) == 4
+    assert machine.set_ups == 2
     assert machine.set_up() == (0, '')
 
 
@@ -201,7 +211,7 @@ def test_sourcing_ros_sets_up_again(machine):
     machine.python('python3', rclpy=True)
     machine.set_up()
     machine.set_up(ROS_DISTRO='jazzy')
-    assert len(machine.calls) == 4
+    assert machine.set_ups == 2
 
 
 def test_a_moved_tree_sets_up_again(machine):
@@ -209,7 +219,7 @@ def test_a_moved_tree_sets_up_again(machine):
     machine.set_up()
     machine.tree = machine.tree.rename(machine.tree.with_name('moved'))
     machine.set_up()
-    assert len(machine.calls) == 4
+    assert machine.set_ups == 2
 
 
 def test_another_wanted_python_sets_up_again(machine):

@@ -50,8 +50,10 @@ def test_nothing_is_said_at_time_zero(start, observer, lesson):
     assert observer.set(time_scale=1.5).successful
     observer.spin_until(lambda: all(everything), 'every topic')
     clock, times, poses, diagnostics = everything
-    assert clock_times(clock)[0] == 2 * SECOND
-    assert min(stamps(times + poses + diagnostics)) == 2 * SECOND
+    said = clock_times(clock) + stamps(times + poses + diagnostics)
+    # Discovery may have missed the first tick, but nothing comes from before it.
+    assert min(said) > 0
+    assert {stamp % (2 * SECOND) for stamp in said} == {0}
 
 
 def test_a_hundred_resets_under_load_succeed_and_every_stamp_is_one_period_later(

@@ -30,7 +30,6 @@ def test_control_says_what_the_node_said(start, lesson, example):
     assert (status, output.startswith("scene 'small_lesson'")) == (0, True)
     status, _, errors = example('control.py', 'step', *node)
     assert (status, errors) == (1, 'not paused: only a paused scene goes step by step\n')
-    assert example('control.py', 'pause', *node) == (0, 'paused\n', '')
     assert example('control.py', 'set', 'rate', '100', *node) == (0, 'rate is 100.0\n', '')
     status, _, errors = example('control.py', 'set', 'rate', 'fast', *node)
     assert (status, errors) == (1, "rate: could not convert string to float: 'fast'\n")

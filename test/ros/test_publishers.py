@@ -31,7 +31,7 @@ class FakeNode:
         self.publishers = {}
         self.listeners = set()
 
-    def create_publisher(self, kind, name, qos, qos_overriding_options):
+    def create_publisher(self, kind, name, qos, **options):
         self.publishers[name] = FakePublisher(name in self.listeners)
         return self.publishers[name]
 

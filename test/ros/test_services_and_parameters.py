@@ -314,8 +314,7 @@ def test_diagnostics_come_every_second_and_at_once_on_a_change(start, observer, 
     for change, key, value in (
         (observer.pause, 'paused', 'true'),
         (lambda: observer.set(time_scale=3.0), 'time_scale', '3.0'),
-        (lambda: observer.set(scene='gas'), 'scene', 'gas'),
-        (lambda: observer.set(seed=5), 'seed', '5'),
+        (lambda: observer.set_together(scene='mixed', seed=5), 'seed', '5'),
     ):
         # Right after one of those that come every second, the next of them is most of a second away.
         observer.collect(diagnostics, 1)

@@ -87,7 +87,7 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
     ),
     'circles_nothing': ('circles:\n', 'circles: must be a list, got nothing'),
     'circle_a_number': ('circles: [7]\n', 'circles[0]: must be a mapping, got 7'),
-    'no_circle_moves': ('circles: []\n', 'circles: at least one must move, got 0, all locked'),
+    'no_circle_moves': ('circles: []\n', 'circles: at least one must move, got none'),
     'all_locked': (
         'circles: [{position: [0, 0], radius: 1, locked: true}]\n',
         'circles: at least one must move, got 1, all locked',

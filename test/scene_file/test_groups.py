@@ -2,6 +2,7 @@
 
 import hashlib
 import math
+import random
 
 import numpy as np
 import pytest
@@ -54,7 +55,7 @@ def gap_to_walls(positions, radii, walls):
     [
         'count: 100, packing: 0.05',
         'count: 2000, packing: 0.3',
-        'count: 10000, packing: 0.44',
+        'count: 5000, packing: 0.44',
         'count: 2000, packing: 0.46',
         'count: 3000, packing: 0.7',
         'count: 3000, packing: 0.88',
@@ -122,6 +123,23 @@ def test_a_group_keeps_clear_of_circles_walls_and_earlier_groups(write, settings
     assert smallest_gap(positions, radii_of(scene)) > 0.0
     groups = slice(3, None)
     assert gap_to_walls(positions[groups], radii_of(scene)[groups], scene.walls) > 0.0
+
+
+@pytest.mark.parametrize('count', [100, 150, 200])
+def test_a_group_keeps_clear_of_many_walls(write, count):
+    starts = (-0.83 + 0.37 * k for k in range(10))
+    walls = ', '.join(f'{{start: [{x:.2f}, -2], end: [{x + 0.1:.2f}, 1]}}' for x in starts)
+    settings = f'count: {count}, radius: 0.06'
+    scene, positions, radii = group_of(write, settings, f'walls: [{walls}]\n')
+    assert gap_to_walls(positions, radii, scene.walls) > 0.0
+
+
+def test_a_wall_takes_no_room_beyond_its_ends(write):
+    # In a strip lower than two of them, circles have no room beside the wall, only beyond its end.
+    region = '{min: [-1, -0.02], max: [1, 0.02]}'
+    text = f'groups: [{{count: 3, radius: 0.015, region: {region}}}]\n'
+    scene = load_scene(write(text + 'walls: [{start: [-1, 0], end: [0.1, 0]}]\n'))
+    assert all(circle.position[0] > 0.1 for circle in scene.circles)
 
 
 def test_circles_come_first_and_groups_in_their_order(write):
@@ -203,6 +221,16 @@ def test_a_group_draws_nothing_from_the_numbers_of_another(write):
         for n in (1, 20)
     ]
     assert scenes[0].circles[-5:] == scenes[1].circles[-5:]
+
+
+@pytest.mark.parametrize('seed', [0, 7, 2**63 - 1])
+def test_group_i_draws_from_pythons_random_of_seed_plus_i_times_2_to_64(write, seed):
+    item = f'- {{count: 1, radius: 1e-9, region: {BOX}}}\n'
+    scene = load_scene(write('groups:\n' + 3 * item), seed)
+    for index, circle in enumerate(scene.circles):
+        draw = random.Random(seed + index * 2**64).random
+        # The region less a radius on each side.
+        assert circle.position == pytest.approx((4.0 * draw() - 1.0, 3.0 * draw() - 2.0), abs=1e-8)
 
 
 # Positions, velocities and radii. To change one takes a reason in the CHANGELOG: scenes would not be the same.

@@ -260,9 +260,9 @@ def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
 def _offsets(reach: int, row: int) -> list[int]:
     """Return the offsets of the cells in reach: those behind the left, right, lower, upper side, and all."""
     steps = range(-reach, reach + 1)
-    behind = [[side * reach + step * row for step in steps] for side in (-1, 1)]
-    behind += [[side * reach * row + step for step in steps] for side in (-1, 1)]
-    return [*sum(behind, []), *(x + y * row for x in steps for y in steps)]
+    left_right = [side * reach + step * row for side in (-1, 1) for step in steps]
+    down_up = [side * reach * row + step for side in (-1, 1) for step in steps]
+    return [*left_right, *down_up, *(x + y * row for x in steps for y in steps)]
 
 
 def _enter_moving(

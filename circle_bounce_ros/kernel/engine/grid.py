@@ -41,6 +41,14 @@ def place_at(circle: Record, time: float) -> tuple[Any, Any]:
     return circle.x + circle.vx * past, circle.y + circle.vy * past
 
 
+def read_positions(moving: Any, time: float, rows: Any) -> None:
+    """Write where circles are at a time, (n, 2)."""
+    for i in range(len(moving)):
+        x, y = place_at(moving[i], time)
+        rows[i, 0] = x
+        rows[i, 1] = y
+
+
 # ------------------------------------------------------------------ lists
 
 
