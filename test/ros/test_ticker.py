@@ -1,4 +1,4 @@
-"""Above 200 Hz ticks come from a thread of their own: as many as asked for, exact, and the services stay consistent."""
+"""Above 200 Hz ticks come from a thread: as many as asked for, exact, and the services stay consistent."""
 
 from __future__ import annotations
 

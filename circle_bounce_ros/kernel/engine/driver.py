@@ -149,13 +149,11 @@ class Driver:
 
     def velocities(self) -> NDArray[np.float64]:
         """Return the velocities of the moving circles, (n, 2), m/s."""
+        rows = np.empty((len(self.world.moving), 2))
         if self._mode.takes_arrays:
-            return _as_rows(self._moving.vx, self._moving.vy)
-        return np.array([(circle.vx, circle.vy) for circle in self.world.moving], np.float64)
-
-
-def _as_rows(x: Array, y: Array) -> Array:
-    """Return (n, 2) from two columns."""
-    rows = np.empty((len(x), 2))
-    rows[:, 0], rows[:, 1] = x, y
-    return rows
+            rows[self._moving.rank, 0] = self._moving.vx
+            rows[self._moving.rank, 1] = self._moving.vy
+        else:
+            for circle in self.world.moving:
+                rows[circle.rank] = circle.vx, circle.vy
+        return rows

@@ -42,11 +42,12 @@ def place_at(circle: Record, time: float) -> tuple[Any, Any]:
 
 
 def read_positions(moving: Any, time: float, rows: Any) -> None:
-    """Write where circles are at a time, (n, 2)."""
+    """Write where circles are at a time, (n, 2), in the order of the scene."""
     for i in range(len(moving)):
-        x, y = place_at(moving[i], time)
-        rows[i, 0] = x
-        rows[i, 1] = y
+        circle = moving[i]
+        x, y = place_at(circle, time)
+        rows[circle.rank, 0] = x
+        rows[circle.rank, 1] = y
 
 
 # ------------------------------------------------------------------ lists
