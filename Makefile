@@ -27,15 +27,17 @@ help:
 	@echo 'make set        in another terminal: a parameter, NAME=time_scale VALUE=0.1'
 	@echo 'make test       everything that CI runs'
 	@echo 'make check      ruff, mypy and import contracts only'
+	@echo 'make bench      the engine and the node beside others: docs/benchmarks, 20 minutes'
+	@echo 'make bench-long a run of 10^9 contacts, 10 minutes;   make bench-soak   memory, 10 minutes'
 	@echo 'make set-up     only make the environments that run and test need'
 	@echo 'make clean      remove what tests and builds leave'
 	@echo 'make distclean  remove the environments too'
 	@echo 'Each takes PYTHON=..., the Python 3.10-3.13 to use, for example make PYTHON=python3.12 run'
 
-set-up: .venv .venvs/kernel .venvs/offline .venvs/colcon
+set-up: .venv .venvs/kernel .venvs/offline .venvs/colcon .venvs/bench
 
-.PHONY: .venv .venvs/kernel .venvs/offline .venvs/colcon
-.venv .venvs/kernel .venvs/offline .venvs/colcon:
+.PHONY: .venv .venvs/kernel .venvs/offline .venvs/colcon .venvs/bench
+.venv .venvs/kernel .venvs/offline .venvs/colcon .venvs/bench:
 	$(SET_UP) $@
 
 define NOTICE
@@ -89,8 +91,22 @@ test-bare-kernel: .venvs/kernel
 test-offline: .venvs/offline
 	env -u PYTHONPATH .venvs/offline/bin/python -m pytest test/offline
 
-test-rest: .venv .venvs/kernel .venvs/colcon
+test-rest: .venv .venvs/kernel .venvs/colcon .venvs/bench
 	$(BIN)/python -m pytest --ignore=test/kernel --ignore=test/offline
+
+# The node first: nothing else is at work then.
+bench: .venv .venvs/bench
+	$(BIN)/python -m benchmarks.node
+	.venvs/bench/bin/python -m benchmarks.engine
+	.venvs/bench/bin/python -m benchmarks.report
+
+bench-long: .venvs/bench
+	.venvs/bench/bin/python -m benchmarks.long_run
+	.venvs/bench/bin/python -m benchmarks.report
+
+bench-soak: .venv .venvs/bench
+	$(BIN)/python -m benchmarks.node --soak 600
+	.venvs/bench/bin/python -m benchmarks.report
 
 clean:
 	rm -rf build install log out .coverage .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis

@@ -68,6 +68,8 @@ setup(
         'viewer': ['aiohttp>=3.9'],
         # Drives the Chromium of the system in the viewer's tests; it downloads none.
         'browser': ['playwright>=1.45'],
+        # Who the engine is compared with, and what draws the comparison.
+        'bench': ['pymunk>=7.0', 'box2d==2.3.10', 'billiards==0.5.0', 'matplotlib>=3.8'],
     },
     entry_points={
         'console_scripts': [

@@ -55,7 +55,7 @@ class Contestant(ABC):
 
 
 class Ours(Contestant):
-    """This project, compiled or plain."""
+    """The engine of this project, compiled or plain."""
 
     name = 'circle_bounce_ros'
     settings = 'as it is'
@@ -178,7 +178,7 @@ class Box2D(Contestant):
     WANTED = 20.0  # m/s, the typical speed
 
     def __init__(self, scene: Scene) -> None:
-        import Box2D as box2d
+        import Box2D as box2d  # noqa: N813 - so that a class can have the name
 
         super().__init__(scene)
         speed = float(
@@ -238,12 +238,12 @@ class Billiards(Contestant):
 
     def __init__(self, scene: Scene) -> None:
         import billiards
-        from billiards.obstacle import Disk, LineSegment
+        from billiards.obstacles import Disk, InfiniteWall
 
         super().__init__(scene)
         self.settings = f'python-billiards {billiards.__version__}: as it is'
         obstacles = [Disk(circle.position, circle.radius) for circle in self.locked]
-        obstacles += [LineSegment(wall.start, wall.end) for wall in scene.walls]
+        obstacles += [InfiniteWall(wall.start, wall.end, inside='left') for wall in scene.walls]
         self.billiard = billiards.Billiard(obstacles)
         for circle in self.moving:
             self.billiard.add_ball(circle.position, circle.velocity, circle.radius, circle.mass)

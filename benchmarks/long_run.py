@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from pathlib import Path
 
 from benchmarks import machine, results
 from circle_bounce_ros.kernel import Simulation, deepest_overlap, kinetic_energy
@@ -20,9 +21,10 @@ REPORTS = 100
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('contacts', nargs='?', type=float, default=1e9)
-    contacts = int(parser.parse_args().contacts)
-    found = run(contacts)
-    path = results.save('long_run', {'machine': machine.describe(), **found})
+    parser.add_argument('--into', type=Path, default=results.FOLDER)
+    arguments = parser.parse_args()
+    found = run(int(arguments.contacts))
+    path = results.save('long_run', {'machine': machine.describe(), **found}, arguments.into)
     print(f'written to {path}')
 
 

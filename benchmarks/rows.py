@@ -59,6 +59,8 @@ def verdict(found: dict[str, Any]) -> str:
     if found['least'] is None and found['aim'] is None:
         return ''
     wanted = found['least'] if found['least'] is not None else found['aim']
+    if wanted == 0.0:
+        return f'missed by {found["median"]:.3g} {found["unit"]}'
     gap = abs(found['median'] / wanted - 1.0)
     return f'missed by {100.0 * gap:.0f} %'
 

@@ -44,6 +44,8 @@ def packages(environment, ros_sourced):
         return ['--editable', '.[fast,offline,test-offline]']
     if environment == '.venvs/kernel':
         return ['numpy', 'pytest']
+    if environment == '.venvs/bench':
+        return ['--editable', '.[fast,bench]']
     if environment == '.venvs/colcon':
         # From 80 on setuptools has no `develop --editable`, which colcon build --symlink-install calls.
         # From 70.1 on it makes wheels without the package wheel.

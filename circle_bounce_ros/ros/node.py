@@ -24,6 +24,7 @@ from circle_bounce_ros.ros.diagnostics import Diagnostics, Facts
 from circle_bounce_ros.ros.parameters import ParameterError, Parameters
 from circle_bounce_ros.ros.publishers import Publishers
 from circle_bounce_ros.ros.runner import Runner
+from circle_bounce_ros.ros.ticker import Ticker
 from circle_bounce_ros.ros.timeline import SECOND, ClockTimeline, Tick, WallTimeline
 
 # However heavy the scene, a service waits about this long for a tick and no longer.
@@ -51,7 +52,7 @@ class BounceNode(Node):
 
     def __init__(self) -> None:
         super().__init__('bounce')
-        # One thread is enough for everything here; the lock is for whoever spins the node with more.
+        # Guards the simulation and all that goes with it: ticks at a high rate come from a thread of their own.
         self._lock = threading.Lock()
         self._settings = Parameters(self, self._on_change)
         self._leads = self._settings['publish_clock']
@@ -70,8 +71,7 @@ class BounceNode(Node):
         self.create_service(Trigger, '~/step', self._step)
         # ROS time would stop the timers whenever it stands or jumps back.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        period = self._timeline.timer_period_ns / SECOND
-        self._tick_timer = self.create_timer(period, self._on_timer, clock=steady)
+        self._ticker = Ticker(self, steady, self._on_timer, self._timeline.timer_period_ns)
         self.create_timer(DIAGNOSTICS_PERIOD, self._on_second, clock=steady)
 
     def _show_scene(self) -> None:
@@ -87,6 +87,7 @@ class BounceNode(Node):
 
     def destroy_node(self) -> None:
         """End what the node has started."""
+        self._ticker.stop()
         self._compiler.stop()
         super().destroy_node()
 
@@ -159,14 +160,8 @@ class BounceNode(Node):
                 self._timeline.set_rate(self._settings['rate'])
             if 'time_scale' in names:
                 self._timeline.set_time_scale(self._settings['time_scale'])
-            self._set_timer_period()
+            self._ticker.set_period(self._timeline.timer_period_ns)
             self._report_change()
-
-    def _set_timer_period(self) -> None:
-        period_ns = self._timeline.timer_period_ns
-        if period_ns != self._tick_timer.timer_period_ns:
-            self._tick_timer.timer_period_ns = period_ns
-            self._tick_timer.reset()
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self._lock:

@@ -171,6 +171,21 @@ def test_levels_of_cells_change_no_bit(kind, monkeypatch):
     assert ordinary.tobytes() == many.drain_contacts().tobytes()
 
 
+@pytest.mark.parametrize('kind', KINDS)
+def test_the_order_in_memory_changes_no_bit(kind, monkeypatch):
+    scene = random_scene(kind, 1)
+    ordinary = Simulation(scene, record_contacts=True)
+    ordinary.advance_to(duration(kind))
+    monkeypatch.setattr(build, 'MANY', 1)
+    sorted_ = Simulation(scene, record_contacts=True)
+    ranks = [circle.rank for circle in build.build(scene, keep_log=False).moving.view(np.recarray)]
+    assert ranks != sorted(ranks)
+    sorted_.advance_to(duration(kind))
+    assert ordinary.positions.tobytes() == sorted_.positions.tobytes()
+    assert ordinary.velocities.tobytes() == sorted_.velocities.tobytes()
+    assert ordinary.drain_contacts().tobytes() == sorted_.drain_contacts().tobytes()
+
+
 @pytest.mark.parametrize('compiled', [False, True])
 def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
     """A cloud falls in on itself: cells fill up far beyond what they held at the start."""
@@ -186,7 +201,7 @@ def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
     scene = Scene(circles, [Wall((-11.0, -11.0), (-11.0, 11.0))])
     ordinary = contacts_of(scene, 3.0, compiled=compiled)
     monkeypatch.setattr(build, 'LOG_BLOCK', 7)
-    monkeypatch.setattr(build, 'CELLS_PER_GAP', 3.0)
+    monkeypatch.setattr(build, 'CELLS_PER_GAP', 2.0)
     simulation = Simulation(scene, record_contacts=True, compiled=compiled)
     before = len(simulation._driver.world.slots)
     simulation.advance_to(3.0)

@@ -19,9 +19,11 @@ def move_to(circle: Record, time: float) -> None:
 
 def collide(world: World, i: int, j: int, time: float) -> None:
     """Carry out the contact of two moving circles."""
-    # Whichever of the two has the plan: the same order, so the same digits.
-    a = world.moving[min(i, j)]
-    b = world.moving[max(i, j)]
+    a = world.moving[i]
+    b = world.moving[j]
+    if a.id > b.id:  # Whichever of the two has the plan: the same order, so the same digits.
+        a = world.moving[j]
+        b = world.moving[i]
     move_to(a, time)
     move_to(b, time)
     a.changes += 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -56,6 +55,10 @@ MOST_CELLS_A_SIDE = 4096
 
 # Contacts are logged in blocks of so many.
 LOG_BLOCK = 4096
+
+# More circles than this do not fit into the processor's cache. They are kept in an order in which neighbours are near
+# each other in memory, which is up to twice as fast; it also decides between contacts at the very same instant.
+MANY = 4096
 
 CACHE_LINE = 64
 
@@ -134,8 +137,11 @@ def with_more_room(world: World) -> World:
 
 def _moving(scene: Scene) -> Array:
     circles = [(index, c) for index, c in enumerate(scene.circles) if not c.locked]
+    if len(circles) > MANY:
+        circles = [circles[k] for k in _along_a_curve(np.array([c.position for _, c in circles]))]
     moving = _aligned(len(circles), MOVING)
     moving['id'] = [index for index, _ in circles]
+    moving['rank'] = np.argsort(np.argsort(moving['id']))
     moving['x'], moving['y'] = np.array([c.position for _, c in circles]).T
     moving['vx'], moving['vy'] = np.array([c.velocity for _, c in circles]).T
     moving['radius'] = [c.radius for _, c in circles]
@@ -143,6 +149,18 @@ def _moving(scene: Scene) -> Array:
     moving['kind'] = NOTHING  # planned for at time 0, first thing
     moving['time_of_cell'] = NEVER
     return moving
+
+
+def _along_a_curve(points: Array) -> Array:
+    """Return the order of points along Morton's curve, on which most neighbours are near each other."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    cells = ((points - low) / (high - low).max() * 65535.0).astype(np.uint64)
+    key = np.zeros(len(points), np.uint64)
+    for bit in range(16):
+        for axis in (0, 1):
+            digit = (cells[:, axis] >> np.uint64(bit)) & np.uint64(1)
+            key |= digit << np.uint64(2 * bit + axis)
+    return np.argsort(key, kind='stable')
 
 
 def _locked(scene: Scene) -> tuple[Array, Array]:
@@ -238,7 +256,7 @@ def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
         columns, rows = (max(1, math.ceil(side / widths[level])) for side in (width, height))
         # Eight cells a side at least, so that five times five have a list each; the finest level has no guests.
         bits = [
-            max(2 if level == 0 else 3, (cells - 1).bit_length()) if number != levels else 0
+            max(2 if level == 0 else 3, _bits(cells)) if number != levels else 0
             for cells in (columns, rows)
         ]
         table['width'] = widths[level]
@@ -258,13 +276,17 @@ def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
     return tables, np.array(around, np.int64)
 
 
+def _bits(cells: int) -> int:
+    """Return how many bits number so many cells, if a tenth of them may share the lists of others: memory."""
+    return math.ceil(math.log2(cells / 1.1))
+
+
 def _offsets(reach: int, row: int) -> list[int]:
     """Return the offsets of the cells in reach: those behind the left, right, lower, upper side, and all."""
     steps = range(-reach, reach + 1)
-    behind = [[side * reach + step * row for step in steps] for side in (-1, 1)]
-    behind += [[side * reach * row + step for step in steps] for side in (-1, 1)]
-    everywhere = [x + y * row for x in steps for y in steps]
-    return [*itertools.chain(*behind), *everywhere]
+    left_right = [side * reach + step * row for side in (-1, 1) for step in steps]
+    down_up = [side * reach * row + step for side in (-1, 1) for step in steps]
+    return [*left_right, *down_up, *(x + y * row for x in steps for y in steps)]
 
 
 def _enter_moving(

@@ -41,6 +41,15 @@ def place_at(circle: Record, time: float) -> tuple[Any, Any]:
     return circle.x + circle.vx * past, circle.y + circle.vy * past
 
 
+def read_positions(moving: Any, time: float, rows: Any) -> None:
+    """Write where circles are at a time, (n, 2), in the order of the scene."""
+    for i in range(len(moving)):
+        circle = moving[i]
+        x, y = place_at(circle, time)
+        rows[circle.rank, 0] = x
+        rows[circle.rank, 1] = y
+
+
 # ------------------------------------------------------------------ lists
 
 

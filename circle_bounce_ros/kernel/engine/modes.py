@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from circle_bounce_ros.kernel.engine import compilation, records
 from circle_bounce_ros.kernel.engine.alone import run_alone
 from circle_bounce_ros.kernel.engine.build import build
+from circle_bounce_ros.kernel.engine.grid import read_positions
 from circle_bounce_ros.kernel.engine.loop import run
 from circle_bounce_ros.kernel.engine.records import World
 from circle_bounce_ros.kernel.scene import Circle, Scene
@@ -31,10 +32,11 @@ class Mode(NamedTuple):
 
     run: Callable[[World, float, int], int]
     run_alone: Callable[[World, float], int]
+    read_positions: Callable[[Any, float, NDArray[np.float64]], None]
     takes_arrays: bool
 
 
-PLAIN = Mode(run, run_alone, takes_arrays=False)
+PLAIN = Mode(run, run_alone, read_positions, takes_arrays=False)
 
 
 @lru_cache(maxsize=1)
@@ -48,8 +50,8 @@ def compiled() -> Mode:
         Where numba is not installed.
 
     """
-    together, alone = compilation.compile_entries(run, run_alone)
-    return Mode(together, alone, takes_arrays=True)
+    together, alone, read = compilation.compile_entries(run, run_alone, read_positions)
+    return Mode(together, alone, read, takes_arrays=True)
 
 
 def compile_ahead() -> bool:
@@ -71,6 +73,7 @@ def compile_ahead() -> bool:
             compiled().run(world, 1.0, 100)
         else:
             compiled().run_alone(world, 1.0)
+        compiled().read_positions(world.moving, 1.0, np.empty((2, 2)))
     compilation.say_ready()
     return True
 

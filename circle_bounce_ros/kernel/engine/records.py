@@ -26,7 +26,8 @@ MOVING = np.dtype(
     + [('changes', 'i4'), ('level', 'i4')]  # its level of the grid; one beyond the last: away
     + [('time_of_hit', 'f8'), ('time_of_cell', 'f8')]  # the plan: the next touch, the next cell
     + [(name, 'i4') for name in ('kind', 'partner', 'partner_changes', 'side')]
-    + [(name, 'i8') for name in ('column', 'row', 'cell', 'id')],  # the id in the scene
+    + [(name, 'i8') for name in ('column', 'row', 'cell')]
+    + [('id', 'i4'), ('rank', 'i4')],  # its number in the scene, and among those that move
     align=True,
 )
 
