@@ -19,6 +19,8 @@ def describe() -> dict[str, str]:
         'cores': str(os.cpu_count()),
         'system': platform.system(),
         'python': platform.python_version(),
+        # Above the number of cores others were at work: CPU times are longer then, and ticks late.
+        'load average': f'{os.getloadavg()[1]:.0f}',
     }
     for package in PACKAGES:
         try:

@@ -111,9 +111,10 @@ def gas(count: int) -> str:
 def share_of_a_core(
     name: str, seen: dict[str, Any], least: float | None, aim: float | None
 ) -> Row:
-    """Return the line of what the node costs."""
+    """Return the line of what the node costs; what it could not do in time is added."""
+    percent = [share / seen['real_time_factor'] for share in seen['cpu_percent']]
     note = f'{100.0 * seen["arrived"]:.2f} % of the messages came' if seen['subscribed'] else ''
-    return row(name, 'CPU', seen['cpu_percent'], '% of a core', least, aim, False, note)
+    return row(name, 'CPU', percent, '% of a core', least, aim, False, note)
 
 
 def lateness(name: str, seen: dict[str, Any]) -> Row:
@@ -173,7 +174,7 @@ def subscriber(
     try:
         yield listener
     finally:
-        listener.terminate()
+        listener.kill()
         listener.wait()
         assert listener.stdout is not None
         listener.stdout.close()
