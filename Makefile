@@ -18,7 +18,6 @@ SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(P
 
 .PHONY: help set-up run listen reset pause resume step set check clean distclean
 .PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest
-.NOTPARALLEL:
 
 help:
 	@echo 'make run        set up what is needed, start the node and its live page   (SCENE=gas PORT=8080 ARGS="-p rate:=100.0")'
@@ -73,15 +72,21 @@ check: .venv
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: set-up check test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest
+# Two at a time where that disturbs nobody; what goes by a clock runs alone.
+test: set-up check
+	+$(MAKE) --no-print-directory -j 2 --output-sync test-kernel test-bare-kernel test-compiled-kernel test-offline
+	+$(MAKE) --no-print-directory test-rest
 	@echo 'make test: PASSED'
 
-# Branch coverage of the plain engine, measured by the kernel's own tests.
+# Branch coverage of the plain engine, measured by the kernel's own tests. Mutants run in the bare environment.
 test-kernel: .venv
-	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel --engine plain
+	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel \
+		--ignore=test/kernel/test_mutation.py --engine plain
 
+# Of the kernel's tests, those in which the engine runs.
+ENGINE_TESTS = awkward_cases exactness laws referee
 test-compiled-kernel: .venv
-	$(BIN)/python -m pytest test/kernel --engine compiled
+	$(BIN)/python -m pytest $(ENGINE_TESTS:%=test/kernel/test_%.py) --engine compiled
 
 # The same tests where there is nothing but numpy and pytest: no ROS, no YAML, no compiler.
 test-bare-kernel: .venvs/kernel
