@@ -17,7 +17,7 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
 .PHONY: help set-up run listen reset pause resume step set check clean distclean
-.PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest
+.PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest test-viewer
 
 help:
 	@echo 'make run        set up what is needed, start the node and its live page   (SCENE=gas PORT=8080 ARGS="-p rate:=100.0")'
@@ -97,7 +97,11 @@ test-offline: .venvs/offline
 	env -u PYTHONPATH .venvs/offline/bin/python -m pytest test/offline
 
 test-rest: .venv .venvs/kernel .venvs/colcon .venvs/bench
-	$(BIN)/python -m pytest --ignore=test/kernel --ignore=test/offline
+	$(BIN)/python -m pytest --durations=15 --ignore=test/kernel --ignore=test/offline --ignore=test/viewer
+
+# The live page in a real browser. Not yet part of `make test`: it depends on how busy the machine is.
+test-viewer: .venv
+	$(BIN)/python -m pytest test/viewer
 
 # The node first: nothing else is at work then.
 bench: .venv .venvs/bench

@@ -17,9 +17,12 @@ IMAGES = sorted((DOCS / 'images').glob('*.png'))
 PHYSICS = (DOCS / 'physics.md').read_text()
 LESSON = ['1.1', '1.2', '1.3', '1.4', '1.5', '2.1', '2.2', '2.3', '2.4']
 
-# How to use the page: nothing in it is typed into Python or drawn from the kernel.
+# How to use the page, and what benchmarks wrote: nothing in them is typed into Python or drawn from the kernel.
+WITHOUT_CODE = ('viewer', 'benchmarks')
 every_document_with_code = pytest.mark.parametrize(
-    'document', [path for path in DOCUMENTS if path.stem != 'viewer'], ids=lambda path: path.name
+    'document',
+    [path for path in DOCUMENTS if path.stem not in WITHOUT_CODE],
+    ids=lambda path: path.name,
 )
 every_document = pytest.mark.parametrize('document', DOCUMENTS, ids=lambda path: path.name)
 
