@@ -130,9 +130,8 @@ class Simulation:
 
     def _describe_crowd(self) -> str:
         world = self._driver.world
-        circle = int(world.moving[world.tree_who[1]].id)
         return (
-            f'{self._scene.label(circle)}: contacts without end at {self._time:.9g} s, more than '
+            f'{self._scene.label(self._driver.crowded)}: contacts without end at {self._time:.9g} s, more than '
             f'{world.patience} of them within {world.crowd_span:.3g} s'
         )
 

@@ -323,7 +323,7 @@ def test_after_endless_contacts_the_others_are_where_they_belong(collide):
     free = [Circle((0.0, y), (0.0, 1.0), radius=0.25) for y in (5.0, -9.0)]
     stuck = Circle((0.0, 0.5), (0.0, 1.0), radius=0.5)
     simulation = Simulation(Scene([free[0], stuck, free[1]], slot, collide), record_contacts=True)
-    with pytest.raises(EndlessContactsError):
+    with pytest.raises(EndlessContactsError, match=r'^circles\[1\]: '):
         simulation.advance_to(3.0)
     assert simulation.time == 0.0
     assert simulation.positions[[0, 2]].tolist() == [[0.0, 5.0], [0.0, -9.0]]

@@ -40,6 +40,7 @@ class Driver:
         self._enter(arrays)
         self._notes: list[Array] = []
         self._reached_alone = 0.0
+        self.crowded = -1  # the id of the circle whose contacts had no end
 
     def _enter(self, arrays: World) -> None:
         """Take a world of arrays for its own."""
@@ -85,6 +86,8 @@ class Driver:
             elif why == LIST_FULL:
                 self._make_room()
             else:
+                if why == ENDLESS:
+                    self._note_crowded()
                 return why
             if at_most is not None:
                 budget = last - self.get('events')
@@ -99,10 +102,16 @@ class Driver:
         while (why := self._mode.run_alone(self.world, until)) == LOG_FULL:
             self._empty_log()
         if why == ENDLESS:
+            self._note_crowded()
             self._go_back_to(self._reached_alone)
             return ENDLESS
         self._reached_alone = until
         return DONE if until == time else BUDGET_SPENT
+
+    def _note_crowded(self) -> None:
+        """Remember whose turn it was."""
+        circle = self.world.moving[self.world.tree_who[1]]
+        self.crowded = int(circle['id'] if self._mode.takes_arrays else circle.id)
 
     def _go_back_to(self, time: float) -> None:
         """Undo what single circles have done beyond a time, by going there once more from the start."""
