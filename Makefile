@@ -17,6 +17,7 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
 .PHONY: help set-up run listen reset pause resume step set check clean distclean
+.PHONY: bench bench-long bench-soak
 .PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest test-viewer
 
 help:

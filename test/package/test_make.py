@@ -49,7 +49,8 @@ def test_make_run_publishes_within_3_seconds_and_ctrl_c_ends_it_cleanly(
         os.killpg(make.pid, signal.SIGINT)
         status = make.wait(PATIENCE)
     said = log.read_text()
-    assert status == -signal.SIGINT, said
+    # make itself dies by the signal, unless whoever started it lets it ignore that.
+    assert status in (0, -signal.SIGINT), said
     assert '/green/pose' in said
     assert 'make listen' in said
     assert 'http://127.0.0.1:' in said

@@ -142,7 +142,7 @@ def test_pypi_brings_ros_where_none_is_sourced(machine):
     machine.set_up()
     venv, pip, _ = machine.calls
     assert '--system-site-packages' not in venv
-    assert pip.endswith('--editable .[ros,fast,test,check,docs]')
+    assert pip.endswith('--editable .[ros,fast,test,check,docs,offline,viewer,browser]')
 
 
 def test_a_sourced_ros_is_used_as_it_is(machine):
@@ -150,7 +150,7 @@ def test_a_sourced_ros_is_used_as_it_is(machine):
     assert machine.set_up(ROS_DISTRO='jazzy')[0] == 0
     venv, pip, _ = machine.calls
     assert '--system-site-packages' in venv
-    assert pip.endswith('--editable .[fast,test,check,docs]')
+    assert pip.endswith('--editable .[fast,test,check,docs,offline,viewer,browser]')
 
 
 def test_the_engine_is_compiled_ahead(machine):
