@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 from observing import PATIENCE, REPOSITORY
+from rclpy.node import NodeNameNonExistentError
 
 from circle_bounce_ros.ros.parameters import PARAMETERS
 from circle_bounce_ros.scene_file import load_scene, scene_names
@@ -66,12 +67,15 @@ def test_the_table_of_topics_and_services_is_the_nodes(start, observer, domain):
     topics = dict(first_columns('Topics'))
     services = dict(first_columns('Services'))
 
-    def offered():
-        names = dict(observer.node.get_publisher_names_and_types_by_node('bounce', '/'))
-        return names if len(names) >= len(topics) else None
+    def offered(what, least):
+        """Return what the node offers once that much of it has been discovered."""
+        try:
+            names = dict(what('bounce', '/'))
+        except NodeNameNonExistentError:
+            return None
+        return names if len(names) >= least else None
 
     own = {'/rosout', '/parameter_events'}
-    there = observer.spin_until(offered, 'all topics')
     expected = {}
     for name, kind in topics.items():
         package, message = kind.split('/')
@@ -79,8 +83,16 @@ def test_the_table_of_topics_and_services_is_the_nodes(start, observer, domain):
             if (circle, name) != ('red', '<circle>/twist'):
                 topic = '/' + name.replace('<circle>', circle).lstrip('/')
                 expected[topic] = [f'{package}/msg/{message}']
+    publishers = observer.node.get_publisher_names_and_types_by_node
+    there = observer.spin_until(
+        lambda: offered(publishers, len(expected) + len(own)), 'all topics of the table'
+    )
     assert {name: kinds for name, kinds in there.items() if name not in own} == expected
-    offered_services = dict(observer.node.get_service_names_and_types_by_node('bounce', '/'))
+    servers = observer.node.get_service_names_and_types_by_node
+    # Those of its parameters come on top.
+    offered_services = observer.spin_until(
+        lambda: offered(servers, len(services) + 6), 'all services of the table'
+    )
     for name, kind in services.items():
         package, service = kind.split('/')
         assert offered_services[name] == [f'{package}/srv/{service}']
