@@ -167,7 +167,7 @@ class Observables:
             error = abs(self._kinetic(state.velocities) / self._energy - 1.0)
             self._energy_error = max(self._energy_error, error)
         if time <= self._warm_up:
-            self._warm_contacts += _ends(contacts['kind'])
+            self._warm_contacts += ends_of(contacts['kind'])
             self._began = time
             return
         if self._began is None:
@@ -236,7 +236,7 @@ class Observables:
         return row
 
 
-def _ends(kinds: NDArray[np.uint8]) -> int:
+def ends_of(kinds: NDArray[np.uint8]) -> int:
     """Return how many circles' contacts these are: two of each pair of moving ones."""
     return len(kinds) + int((kinds == ContactKind.CIRCLE).sum())
 

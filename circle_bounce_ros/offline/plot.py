@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -11,11 +12,19 @@ import numpy as np
 from pyarrow import parquet
 
 from circle_bounce_ros.kernel import EndlessContactsError, SceneError
-from circle_bounce_ros.offline import pictures, style
-from circle_bounce_ros.offline.animation import FRAMES_PER_SECOND, animate
-from circle_bounce_ros.offline.pictures import Picture
-from circle_bounce_ros.offline.sources import Source, SourceError, open_source
-from circle_bounce_ros.offline.sweep import SUMMARY
+from circle_bounce_ros.offline.bag_source import of_bag
+from circle_bounce_ros.offline.pictures import style
+from circle_bounce_ros.offline.pictures.animation import FRAMES_PER_SECOND, animate
+from circle_bounce_ros.offline.pictures.energy import energy
+from circle_bounce_ros.offline.pictures.free_path import free_path
+from circle_bounce_ros.offline.pictures.pressure import pressure
+from circle_bounce_ros.offline.pictures.speeds import speeds
+from circle_bounce_ros.offline.pictures.style import Picture
+from circle_bounce_ros.offline.pictures.trajectories import trajectories
+from circle_bounce_ros.offline.source import Source, SourceError, of_scene
+from circle_bounce_ros.offline.summary import SUMMARY, is_parameter
+from circle_bounce_ros.offline.ticks import LARGEST_RATE
+from circle_bounce_ros.scene_file import load_scene
 
 COMMAND = 'bounce_plot'
 ANIMATION, PRESSURE = 'animation', 'pressure'
@@ -29,11 +38,14 @@ DEFAULTS: dict[str, tuple[float, float]] = {
     'energy': (60.0, 10.0),
 }
 
+# Of a bag these show all of it.
+OF_A_WHOLE_BAG = ('speeds', 'free_path', 'energy')
+
 DRAW: dict[str, Callable[[Source], Picture]] = {
-    'trajectories': pictures.trajectories,
-    'speeds': pictures.speeds,
-    'free_path': pictures.free_path,
-    'energy': pictures.energy,
+    'trajectories': trajectories,
+    'speeds': speeds,
+    'free_path': free_path,
+    'energy': energy,
 }
 
 
@@ -49,9 +61,12 @@ def arguments_of(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument('-o', '--output', type=Path, help='.png or .svg; .gif for an animation')
     parser.add_argument('--duration', type=float, help='s; of a bag its first so many')
     parser.add_argument(
-        '--rate', type=float, help='instants a second, Hz; those of a bag are there'
+        '--rate', type=float, help='instants a second, Hz; of a bag no more than there are'
     )
     parser.add_argument('--seed', type=int, help="in place of the scene file's own")
+    parser.add_argument(
+        '--namespace', help='of a bag in which more than one node was recorded: whose'
+    )
     parser.add_argument('--force', action='store_true', help='write over a picture that is there')
     return parser.parse_args(arguments)
 
@@ -107,19 +122,43 @@ def draw(chosen: argparse.Namespace, path: Path) -> dict[str, float]:
     try:
         if chosen.picture == PRESSURE:
             numbers = finish(draw_pressure(Path(chosen.source)), begun)
+        elif chosen.picture == ANIMATION:
+            numbers = animate(open_source(chosen), begun)
         else:
-            duration, rate = DEFAULTS[chosen.picture]
-            source = open_source(
-                chosen.source, chosen.duration or duration, chosen.rate or rate, chosen.seed
-            )
-            if chosen.picture == ANIMATION:
-                numbers = animate(source, begun)
-            else:
-                numbers = finish(DRAW[chosen.picture](source), begun)
+            numbers = finish(DRAW[chosen.picture](open_source(chosen)), begun)
         begun.replace(path)
     finally:
         begun.unlink(missing_ok=True)
     return numbers
+
+
+def open_source(chosen: argparse.Namespace) -> Source:
+    """
+    Return the scene or the bag that the command line names: a bag if there is a folder of that name.
+
+    Raises
+    ------
+    SourceError, SceneError
+        For what is neither, or is broken, or an option that does not go with it.
+
+    """
+    duration, rate = DEFAULTS[chosen.picture]
+    folder = Path(chosen.source)
+    if folder.is_dir() and chosen.duration is None and chosen.picture in OF_A_WHOLE_BAG:
+        duration = math.inf
+    duration = duration if chosen.duration is None else chosen.duration
+    rate = rate if chosen.rate is None else chosen.rate
+    if not folder.is_dir():
+        if chosen.namespace is not None:
+            raise SourceError('namespace: goes with a bag only')
+        return of_scene(load_scene(chosen.source, chosen.seed), duration, rate)
+    if chosen.seed is not None:
+        raise SourceError(f'seed: goes with a scene only, got the bag {folder}')
+    if not duration > 0.0:
+        raise SourceError(f'duration: must be > 0 s, got {duration:g}')
+    if not 0.0 < rate <= LARGEST_RATE:
+        raise SourceError(f'rate: must be > 0 and at most {LARGEST_RATE:g} Hz, got {rate:g}')
+    return of_bag(folder, duration, rate, chosen.namespace)
 
 
 def finish(picture: Picture, path: Path) -> dict[str, float]:
@@ -134,15 +173,18 @@ def draw_pressure(folder: Path) -> Picture:
     path = folder / SUMMARY
     if not path.exists():
         raise SourceError(f'{folder}: must be the folder of a sweep with its {SUMMARY}')
-    rows = parquet.read_table(path).to_pylist()
-    seeds = len({row['seed'] for row in rows})
-    values = [(row['packing'], row['compressibility']) for row in rows]
-    if not values or any(value is None for pair in values for value in pair):
-        raise SourceError(f'{folder}: must have a pressure in the bulk of every run')
-    if len(values) % seeds:
-        raise SourceError(f'{folder}: runs are missing, finish the sweep first')
-    table = np.array(values).reshape(-1, seeds, 2)
-    return pictures.pressure(folder.name, table[:, :, 0], table[:, :, 1])
+    table = parquet.read_table(path)
+    parameters = [field.name for field in table.schema if is_parameter(field)]
+    settings: dict[str, list[tuple[float, float]]] = {}
+    for row in table.to_pylist():
+        if row['packing'] is None or row['compressibility'] is None:
+            raise SourceError(f'{folder}: must have a pressure in the bulk of every run')
+        setting = str([row[name] for name in parameters])
+        settings.setdefault(setting, []).append((row['packing'], row['compressibility']))
+    if len({len(runs) for runs in settings.values()}) != 1:
+        raise SourceError(f'{folder}: must have all seeds of each setting: finish the sweep first')
+    found = np.array(list(settings.values()))
+    return pressure(folder.name, found[:, :, 0], found[:, :, 1])
 
 
 if __name__ == '__main__':

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import fcntl
-import io
-import json
 import logging
 import os
 import sys
@@ -14,24 +11,18 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import dask
-import pyarrow as pa
 from distributed import CancelledError, Client, KilledWorker, LocalCluster, wait
 from tqdm import tqdm
 
-from circle_bounce_ros.offline.observables import COLUMNS
-from circle_bounce_ros.offline.parquet import write_table
 from circle_bounce_ros.offline.plan import Plan, PlanError, load_plan
 from circle_bounce_ros.offline.run import PLAN, RUNS, perform, remove_unfinished
 from circle_bounce_ros.offline.stopping import Stopping
+from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, replace, write_summary
 
 COMMAND = 'bounce_sweep'
-ROWS = 'rows.jsonl'
-SUMMARY = 'summary.parquet'
-SUMMARY_CSV = 'summary.csv'
-FAILURES = 'failures.jsonl'
 LOCK = '.lock'
 
 # Runs that wait at the scheduler for each thread of a worker: it never holds the whole sweep.
@@ -121,13 +112,6 @@ def locked(folder: Path, plan: Plan) -> Iterator[None]:
                 'take another folder'
             )
         yield
-
-
-def replace(path: Path, text: str) -> None:
-    """Write a file that is whole as soon as it has its name."""
-    begun = path.with_name(f'.{path.name}')
-    begun.write_text(text)
-    begun.replace(path)
 
 
 def sweep(plan: Plan, chosen: argparse.Namespace, stop: Stopping) -> int:
@@ -249,59 +233,6 @@ def row_of(plan: Plan, future: Any) -> dict[str, Any]:
         problem = f'{DEATHS} workers died while they had it'
         return {'run': run.number, 'seed': run.seed, **run.parameters, 'error': problem}
     return row
-
-
-def finished_rows(folder: Path) -> dict[int, dict[str, Any]]:
-    """Return the rows that are there. What was cut short in the middle of a line does not count."""
-    path = folder / ROWS
-    if not path.exists():
-        return {}
-    text = path.read_text()
-    whole = text[: text.rfind('\n') + 1]
-    if whole != text:
-        replace(path, whole)
-    rows = (json.loads(line) for line in whole.splitlines())
-    return {row['run']: row for row in rows}
-
-
-def add_line(log: TextIO, row: dict[str, Any]) -> None:
-    """Add a row to the log, so that it is there whatever happens next."""
-    log.write(json.dumps(row) + '\n')
-    log.flush()
-
-
-def write_summary(
-    folder: Path, plan: Plan, rows: dict[int, dict[str, Any]], failures: dict[int, dict[str, Any]]
-) -> None:
-    """Write all rows in the order of the runs, which is the same whoever carried them out."""
-    ordered = [rows[number] for number in sorted(rows)]
-    replace(folder / ROWS, ''.join(json.dumps(row) + '\n' for row in ordered))
-    failed = [failures[number] for number in sorted(failures)]
-    replace(folder / FAILURES, ''.join(json.dumps(row) + '\n' for row in failed))
-    units = {'run': ('1', 'number of the run'), 'seed': ('1', 'of its random numbers')}
-    units |= dict.fromkeys(plan.parameters, ('as in the scene file', 'parameter'))
-    units |= COLUMNS
-    fields, arrays = [], []
-    for name, (unit, meaning) in units.items():
-        values = [row[name] for row in ordered]
-        if any(isinstance(value, (list, dict)) for value in values):
-            values = [json.dumps(value) for value in values]
-        array = pa.array(values, pa.float64() if is_number(name, values) else None)
-        arrays.append(array)
-        metadata = {'unit': unit, 'meaning': meaning}
-        fields.append(pa.field(name, array.type, metadata=metadata))
-    schema = pa.schema(fields, metadata={'scene': plan.name, 'plan': plan.digest()})
-    write_table(pa.Table.from_arrays(arrays, schema=schema), folder / SUMMARY)
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(units), lineterminator='\n')
-    writer.writeheader()
-    writer.writerows(ordered)
-    replace(folder / SUMMARY_CSV, text.getvalue())
-
-
-def is_number(name: str, values: list[Any]) -> bool:
-    """Return whether a column is one of real numbers, even if all of them happen to be whole or missing."""
-    return name in COLUMNS or any(isinstance(value, float) for value in values)
 
 
 if __name__ == '__main__':

@@ -11,10 +11,13 @@ from PIL import Image
 
 from circle_bounce_ros.kernel import Circle, Scene, Simulation, Wall
 from circle_bounce_ros.offline import record
+from circle_bounce_ros.offline.bag_source import of_bag
+from circle_bounce_ros.offline.expected import billiard_of
 from circle_bounce_ros.offline.observables import open_border
-from circle_bounce_ros.offline.pictures import billiard_of
+from circle_bounce_ros.offline.pictures import style
+from circle_bounce_ros.offline.pictures.speeds import speeds
 from circle_bounce_ros.offline.plot import main
-from circle_bounce_ros.offline.sources import open_source
+from circle_bounce_ros.offline.source import of_scene
 from circle_bounce_ros.scene_file import load_scene
 
 
@@ -75,6 +78,43 @@ def test_a_png_keeps_its_numbers_and_fits_a_readme(tmp_path, draw):
     assert (tmp_path / 'picture.png').stat().st_size < 150_000
 
 
+def test_colours_that_eyes_tell_apart_reach_the_png_as_they_are(tmp_path, draw):
+    draw('trajectories', 'break')
+    pixels = np.asarray(Image.open(tmp_path / 'picture.png').convert('RGB')).reshape(-1, 3)
+    colours, counts = np.unique(pixels, axis=0, return_counts=True)
+    seen = {bytes(c).hex().upper() for c, n in zip(colours, counts, strict=True) if n > 100}
+    assert {'FFFFFF', *(color.lstrip('#') for color in style.CYCLE)} <= seen
+
+
+def simulated_deuteranope(color):
+    """Return how somebody without green cones sees a colour, linear RGB (Vienot, Brettel and Mollon 1999)."""
+    srgb = np.array([int(color[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    to_cones = np.array(
+        [[17.8824, 43.5161, 4.11935], [3.45565, 27.1554, 3.86714], [0.0299566, 0.184309, 1.46709]]
+    )
+    cones = to_cones @ linear
+    cones[1] = 0.494207 * cones[0] + 1.24827 * cones[2]
+    return np.linalg.solve(to_cones, cones)
+
+
+def test_lines_differ_for_who_cannot_tell_red_from_green():
+    seen = [simulated_deuteranope(color) for color in style.CYCLE]
+    apart = [np.abs(a - b).max() for k, a in enumerate(seen) for b in seen[:k]]
+    # Pure red and the green that such an eye takes for it are 0 apart; black and white 1.
+    assert min(apart) > 0.1
+
+
+def test_where_no_moving_circles_hit_each_other_maxwells_law_is_not_claimed():
+    def said(name):
+        figure, _ = speeds(of_scene(load_scene(name), 2.0, 10.0))
+        return ' '.join(text.get_text() for text in figure.axes[0].texts)
+
+    assert 'not for these' in said('pegboard')
+    assert 'not for these' in said('billiard')
+    assert 'not for these' not in said('mixed')
+
+
 def test_an_animation_shows_the_circle_where_the_kernel_has_it(tmp_path, draw):
     numbers = draw('animation', 'lesson', '--duration', 2, name='a.gif')
     assert numbers['frames'] == 41  # at 20 Hz, the first instant included
@@ -110,7 +150,7 @@ def test_a_bag_without_its_scene_gives_the_same_states_and_walls(tmp_path, gas_b
     for path in gas_bag.iterdir():
         if path.name != 'scene.yaml':
             (bare / path.name).write_bytes(path.read_bytes())
-    with_scene, without = (open_source(str(f), 9.0, 1.0, None) for f in (gas_bag, bare))
+    with_scene, without = (of_bag(folder, 9.0, 60.0) for folder in (gas_bag, bare))
     assert not without.masses_known
     assert with_scene.masses_known
     ends = [sorted((w.start, w.end) for w in s.scene.walls) for s in (with_scene, without)]
@@ -159,12 +199,12 @@ def test_the_closed_form_is_for_billiards_in_which_nothing_is_out_of_reach():
     def post(x, y, radius=0.5):
         return Circle((x, y), radius=radius, locked=True)
 
-    area, border = billiard_of(Scene([ball, post(2, 1.5)], box))
+    area, border = billiard_of(Scene([ball, post(2, 1.5)], box), True)
     assert area == pytest.approx(3.8 * 2.8 - math.pi * 0.36)
     assert border == pytest.approx(2 * (3.8 + 2.8) + 2 * math.pi * 0.6)
-    assert billiard_of(Scene([ball, post(2, 1.5), post(3.15, 1.5)], box)) is None
-    assert billiard_of(Scene([ball, post(3.35, 1.5)], box)) is None
-    assert billiard_of(Scene([ball, Circle((1, 1), radius=0.1)], box)) is None
+    assert billiard_of(Scene([ball, post(2, 1.5), post(3.15, 1.5)], box), True) is None
+    assert billiard_of(Scene([ball, post(3.35, 1.5)], box), True) is None
+    assert billiard_of(Scene([ball, Circle((1, 1), radius=0.1)], box), True) is None
     assert open_border(Scene([ball], box[:3])) is None
     tilted = [
         Wall((0, -3), (3, 0)),
@@ -184,6 +224,8 @@ def test_the_closed_form_is_for_billiards_in_which_nothing_is_out_of_reach():
         (['energy', '.', '-o', 'a.png'], 'has no metadata.yaml'),
         (['pressure', '.', '-o', 'a.png'], 'must be the folder of a sweep'),
         (['energy', 'lesson', '--duration', '-1', '-o', 'a.png'], 'duration: must be > 0'),
+        (['energy', 'lesson', '--duration', '0', '-o', 'a.png'], 'duration: must be > 0'),
+        (['energy', 'lesson', '--namespace', 'a', '-o', 'a.png'], 'goes with a bag only'),
     ],
 )
 def test_what_is_wrong_is_said_and_leaves_nothing(

@@ -34,7 +34,8 @@ def run_without(names, code, *arguments):
 
 def test_every_module_is_imported_without_ros():
     folder = ROOT / 'circle_bounce_ros/offline'
-    names = [f'circle_bounce_ros.offline.{path.stem}' for path in sorted(folder.glob('[a-z]*.py'))]
+    paths = [path.relative_to(ROOT).with_suffix('') for path in sorted(folder.rglob('[a-z]*.py'))]
+    names = ['.'.join(path.parts) for path in paths]
     assert len(names) > 10
     done = run_without(ROS, '\n'.join(f'import {name}' for name in names))
     assert done.returncode == 0, done.stderr

@@ -2,41 +2,67 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from circle_bounce_ros.kernel import Scene
 from circle_bounce_ros.offline.observables import Window
-from circle_bounce_ros.offline.pictures import view_of
-from circle_bounce_ros.offline.sources import Frame, Source
-from circle_bounce_ros.offline.style import LOCKED, LOCKED_FILL, MOVING, MOVING_FILL, WALL
+from circle_bounce_ros.offline.pictures.plane import view_of
+from circle_bounce_ros.offline.pictures.style import (
+    LOCKED,
+    LOCKED_FILL,
+    MOVING,
+    MOVING_FILL,
+    WALL,
+    frequent_colours,
+    with_palette,
+)
+from circle_bounce_ros.offline.source import Frame, Source, SourceError
 
 LONGER_SIDE = 480  # px
 FINER = 3  # drawn so much larger and then reduced: smooth borders
 COLOURS = 32
-FRAMES_PER_SECOND = 20.0  # a GIF counts in hundredths of a second
+FRAMES_PER_SECOND = 20.0
+TICK = 10  # ms: a GIF counts in hundredths of a second
+SHORTEST = 2  # of them, or browsers slow it down
 
 
 def animate(source: Source, path: Path) -> dict[str, float]:
-    """Write the frames of a source, which come at `FRAMES_PER_SECOND`, and return how many."""
-    view = view_of(source)
-    still = _Drawing(view)
+    """Write all frames of a source, each as long as it takes, and return how many there are."""
+    still = _Drawing(view_of(source))
     still.draw_still(source.scene)
     radii = [circle.radius for circle in source.moving]
-    pictures = [still.with_circles(frame, radii) for frame in source.frames()]
-    # One palette for all, or colours would flicker.
-    palette = pictures[0].quantize(COLOURS)
-    reduced = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    reduced[0].save(
+    times: list[float] = []
+    pictures: list[Image.Image] = []
+    palette: NDArray[np.uint8] | None = None
+    for frame in source.frames():
+        picture = still.with_circles(frame, radii)
+        # One palette for all, or colours would flicker.
+        palette = frequent_colours(picture, COLOURS) if palette is None else palette
+        pictures.append(with_palette(picture, palette))
+        times.append(frame.time)
+    if len(times) < 2:
+        raise SourceError(f'{source.name}: must have at least two instants, got {len(times)}')
+    pictures[0].save(
         path,
         save_all=True,
-        append_images=reduced[1:],
-        duration=round(1000.0 / FRAMES_PER_SECOND),
+        append_images=pictures[1:],
+        duration=durations(times),
         loop=0,
         optimize=False,
     )
-    return {'frames': len(pictures), 'circles': len(radii)}
+    return {'frames': len(pictures), 'circles': len(radii), 'duration': times[-1]}
+
+
+def durations(times: list[float]) -> list[int]:
+    """Return how long each frame is shown, ms: until the next one, the last one as long as that before."""
+    ends = [round(time * 1000.0 / TICK) for time in times]
+    shown = [max(SHORTEST, later - sooner) * TICK for sooner, later in pairwise(ends)]
+    return [*shown, shown[-1]]
 
 
 class _Drawing:
