@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.engine import records
-from circle_bounce_ros.kernel.engine.driver import Driver
+from circle_bounce_ros.kernel.engine.driver import drive
 from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS
 from circle_bounce_ros.kernel.scene import Scene
 
@@ -82,7 +82,7 @@ class Simulation:
         self._start(record_contacts)
 
     def _start(self, record_contacts: bool) -> None:
-        self._driver = Driver(self._scene, record_contacts, self._compiled)
+        self._driver = drive(self._scene, record_contacts, self._compiled)
         self._time = 0.0
 
     def reset(self) -> None:
@@ -115,9 +115,9 @@ class Simulation:
 
         """
         time = float(time)
-        if not math.isfinite(time):
-            raise ValueError(f'time: must be finite, got {time}')
-        if time < self._time:
+        if not self._time <= time < math.inf:
+            if not math.isfinite(time):
+                raise ValueError(f'time: must be finite, got {time}')
             raise ValueError(f'time: must not be before {self._time} s, got {time}')
         why = self._driver.run(time, at_most)
         if why == DONE:

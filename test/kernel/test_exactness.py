@@ -56,6 +56,20 @@ def test_the_same_bits_for_any_cut_of_time():
 
 
 @pytest.mark.parametrize('kind', KINDS)
+def test_every_state_on_the_way_is_that_of_a_run_that_went_there_directly(kind):
+    scene = random_scene(kind, 4)
+    until = 0.02 if kind == 'fast' else 8.0
+    rng = random.Random(2)
+    step_by_step = Simulation(scene)
+    for time in sorted(until * rng.random() for _ in range(40)):
+        step_by_step.advance_to(time)
+        direct = Simulation(scene)
+        direct.advance_to(time)
+        assert state_of(step_by_step) == state_of(direct)
+    assert step_by_step.contact_count > 10
+
+
+@pytest.mark.parametrize('kind', KINDS)
 def test_the_same_bits_with_the_work_cut_in_slices(kind):
     scene = random_scene(kind, 3)
     until = 0.02 if kind == 'fast' else 8.0

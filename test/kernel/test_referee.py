@@ -8,8 +8,8 @@ from random_scenes import KINDS, place, random_scene, two_levels
 from referee import CIRCLE, WALL, Fault, replay
 
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, Simulation, Wall
-from circle_bounce_ros.kernel.engine import build, grid, loop, plan
-from circle_bounce_ros.kernel.engine.records import NOTHING
+from circle_bounce_ros.kernel.engine import build, cells, driver, grid, loop, plan
+from circle_bounce_ros.kernel.engine.records import CIRCLES_AT, COUNT_AT, NOTHING
 
 
 def contacts_of(scene, until, **options):
@@ -94,9 +94,10 @@ def test_referee_catches_a_forged_contact(honest, field, change):
 
 def test_referee_catches_an_engine_that_looks_in_its_own_cell_only(monkeypatch):
     def short_sighted(world, table, cell, side, reach, count):
-        at = table.slot + table.room * cell
-        members = world.filled[table.first + cell]
-        world.near[count : count + members] = world.slots[at : at + members]
+        at = grid.list_at(table, cell)
+        members = world.lists[at + COUNT_AT]
+        at += CIRCLES_AT
+        world.near[count : count + members] = world.lists[at : at + members]
         return count + members
 
     monkeypatch.setattr(grid, 'gather_around', short_sighted)
@@ -144,9 +145,9 @@ def test_the_grid_changes_no_bit(kind, monkeypatch):
     world.near.extend([0] * len(world.moving))
     world.post_numbers[:] = range(len(world.posts))
     world.flat_numbers[:] = range(len(world.flats))
-    for cell in world.cells:
-        cell.first_post, cell.end_post = 0, len(world.posts)
-        cell.first_flat, cell.end_flat = 0, len(world.flats)
+    for reach in world.reaches:
+        reach.first_post, reach.end_post = 0, len(world.posts)
+        reach.first_flat, reach.end_flat = 0, len(world.flats)
     without.advance_to(until)
     assert with_grid.tobytes() == without.drain_contacts().tobytes()
     assert (with_grid['kind'] == CIRCLE).any() == (kind != 'pass_through')
@@ -162,8 +163,8 @@ def test_levels_of_cells_change_no_bit(kind, monkeypatch):
     """As many levels as sizes allow, against those that are worth their while."""
     scene = random_scene(kind, 6)
     ordinary = contacts_of(scene, duration(kind))
-    monkeypatch.setattr(build, 'CROWDED', 0.01)
-    monkeypatch.setattr(build, 'CELLS_PER_GAP', 0.1)
+    monkeypatch.setattr(cells, 'CROWDED', 0.01)
+    monkeypatch.setattr(cells, 'CELLS_PER_GAP', 0.1)
     many = Simulation(scene, record_contacts=True, compiled=False)
     if kind in ('mixed', 'sizes'):
         assert many._driver.world.levels >= 2
@@ -201,11 +202,11 @@ def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
     scene = Scene(circles, [Wall((-11.0, -11.0), (-11.0, 11.0))])
     ordinary = contacts_of(scene, 3.0, compiled=compiled)
     monkeypatch.setattr(build, 'LOG_BLOCK', 7)
-    monkeypatch.setattr(build, 'CELLS_PER_GAP', 2.0)
+    monkeypatch.setattr(cells, 'CELLS_PER_GAP', 2.0)
     simulation = Simulation(scene, record_contacts=True, compiled=compiled)
-    before = len(simulation._driver.world.slots)
+    before = len(simulation._driver.world.lists)
     simulation.advance_to(3.0)
-    assert len(simulation._driver.world.slots) > before
+    assert len(simulation._driver.world.lists) > before
     contacts = simulation.drain_contacts()
     assert contacts.tobytes() == ordinary.tobytes()
     assert replay(scene, contacts, 3.0) > 100
@@ -220,10 +221,36 @@ def test_plain_and_compiled_code_give_the_same_bits(kind):
     assert plain.tobytes() == contacts_of(scene, duration(kind), compiled=True).tobytes()
 
 
-def test_circles_followed_alone_do_what_the_queue_would_make_them_do():
+@pytest.mark.parametrize('kind', KINDS)
+def test_looking_ahead_changes_no_bit(kind, monkeypatch):
+    pytest.importorskip('numba', reason='numba is not installed: plain code never looks ahead')
+    scene = random_scene(kind, 2)
+    straight = contacts_of(scene, duration(kind), compiled=True)
+    monkeypatch.setattr(build, 'VERY_MANY', 0)
+    ahead = Simulation(scene, record_contacts=True, compiled=True)
+    assert ahead._driver.world.looks_ahead
+    ahead.advance_to(duration(kind))
+    assert len(straight) > 20
+    assert straight.tobytes() == ahead.drain_contacts().tobytes()
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_circle_that_moves_alone_does_what_the_queue_would_make_it_do(seed, monkeypatch):
+    crowd = random_scene('mixed', seed)
+    moving = [circle for circle in crowd.circles if not circle.locked]
+    locked = [circle for circle in crowd.circles if circle.locked]
+    scene = Scene([moving[0], *locked], crowd.walls)
+    alone = contacts_of(scene, 5_000.0)  # so long that clocks are set back
+    monkeypatch.setattr(driver, 'Alone', driver.Together)
+    assert len(alone) > 200
+    assert alone.tobytes() == contacts_of(scene, 5_000.0).tobytes()
+
+
+def test_circles_followed_alone_do_what_the_queue_would_make_them_do(monkeypatch):
     """Circles that pass through each other have a short cut of their own: same contacts, same bits."""
     scene = random_scene('pass_through', 4)
     alone = contacts_of(scene, 100.0)
+    monkeypatch.setattr(driver, 'Alone', driver.Together)
     one_by_one = [
         contacts_of(Scene([circle, *(c for c in scene.circles if c.locked)], scene.walls), 100.0)
         for circle in scene.circles

@@ -1,5 +1,7 @@
 """
-Circles that pass through each other: each is followed on its own, with no need of a queue.
+A circle that moves alone, or circles that pass through each other: each is followed on its own, without a queue.
+
+Of the tournament only the top is used: the earliest time at which there is something to do.
 
 The same contacts at the same instants as `loop` would find, to the last digit.
 """
@@ -25,8 +27,10 @@ def run_alone(world: World, time: float) -> int:
 
     """
     state = world.state[0]
+    until = time - state.epoch
+    if world.tree_time[1] > until:
+        return DONE
     while True:
-        until = time - state.epoch
         earliest = NEVER
         for i in range(len(world.moving)):
             circle = world.moving[i]
@@ -50,8 +54,10 @@ def run_alone(world: World, time: float) -> int:
                 follow(world, circle, now)
             earliest = min(earliest, circle.time_of_hit)
         if earliest > until:
+            world.tree_time[1] = earliest
             return DONE
         set_clock_back(world, earliest)
+        until = time - state.epoch
 
 
 def follow(world: World, circle: Record, now: float) -> None:

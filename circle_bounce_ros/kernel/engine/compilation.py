@@ -13,6 +13,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -20,9 +21,12 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
+from circle_bounce_ros.kernel.engine.ahead import fetch
+
 KERNEL = Path(__file__).resolve().parents[1]
 PACKAGE = 'circle_bounce_ros.kernel'
 READY = 'ready'
+CACHE_LINE = 64
 
 Function = Callable[..., Any]
 
@@ -49,6 +53,8 @@ def compile_entries(*entries: Function) -> list[Function]:
     """Return compiled twins of functions, which call compiled twins of all that they call."""
     numba: Any = import_module('numba')
     twins: dict[Function, Any] = {}
+    with suppress(ImportError):  # not all that it needs is part of numba's public face
+        twins[fetch] = _prefetch()
     previous = numba.config.CACHE_DIR
     folder = cache_directory()
     numba.config.CACHE_DIR = str(folder or '')
@@ -83,6 +89,33 @@ def _njit(function: Function, options: dict[str, Any]) -> Any:
         return numba.njit(_nrt=False, **common)(function)
     except KeyError:  # a numba without this option, which is not part of its public face
         return numba.njit(**common)(function)
+
+
+def _prefetch() -> Any:
+    """Return `fetch` as the processor's own instruction for it."""
+    ir: Any = import_module('llvmlite.ir')
+    types: Any = import_module('numba.core.types')
+    arrays: Any = import_module('numba.np.arrayobj')
+    extending: Any = import_module('numba.extending')
+    address, number, choice = ir.IntType(8).as_pointer(), ir.IntType(64), ir.IntType(32)
+    read, keep, data = (choice(value) for value in (0, 3, 1))
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array = arrays.make_array(signature.args[0])(context, builder, arguments[0])
+        index = context.cast(builder, arguments[1], signature.args[1], types.int64)
+        size = context.get_abi_sizeof(context.get_data_type(signature.args[0].dtype))
+        at = builder.add(builder.ptrtoint(array.data, number), builder.mul(index, number(size)))
+        kind = ir.FunctionType(ir.VoidType(), [address, choice, choice, choice])
+        instruction = builder.module.declare_intrinsic('llvm.prefetch', [address], kind)
+        for line in range(0, size, CACHE_LINE):
+            where = builder.inttoptr(builder.add(at, number(line)), address)
+            builder.call(instruction, [where, read, keep, data])
+        return context.get_dummy_value()
+
+    def fetch_twin(typing: Any, array: Any, index: Any) -> Any:
+        return types.void(array, index), generate
+
+    return extending.intrinsic(fetch_twin)
 
 
 def cache_directory() -> Path | None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine import build, modes
+from circle_bounce_ros.kernel.engine import build, cells, modes
 from circle_bounce_ros.kernel.engine.loop import BUDGET_SPENT, DONE, ENDLESS, LIST_FULL, LOG_FULL
 from circle_bounce_ros.kernel.engine.records import NOTE, World
 from circle_bounce_ros.kernel.scene import Scene
@@ -17,9 +18,9 @@ Array = NDArray[Any]
 WITHOUT_END = 2**62
 
 
-class Driver:
+def drive(scene: Scene, keep_log: bool, compiled: bool | None) -> Driver:
     """
-    A world and how it is run.
+    Return the driver of a scene at its first instant.
 
     Parameters
     ----------
@@ -29,18 +30,31 @@ class Driver:
         None: whichever is faster and there.
 
     """
+    moving = sum(not circle.locked for circle in scene.circles)
+    kind = Together if scene.moving_circles_collide and moving > 1 else Alone
+    return kind(scene, keep_log, modes.choose(moving, compiled))
 
-    def __init__(self, scene: Scene, keep_log: bool, compiled: bool | None) -> None:
+
+class Driver(ABC):
+    """
+    A world and how it is run.
+
+    Attributes
+    ----------
+    world : World
+    crowded : int
+        The id of the circle whose contacts had no end, -1 if there is none.
+
+    """
+
+    def __init__(self, scene: Scene, keep_log: bool, mode: modes.Mode) -> None:
         self._scene = scene
-        arrays = build.build(scene, keep_log)
-        self._collide = scene.moving_circles_collide
-        self._mode = modes.choose(len(arrays.moving), compiled)
+        self._mode = mode
         # This tells the types of the arrays when a world of objects has to become one again.
-        self._types = arrays
-        self._enter(arrays)
+        self._types = build.build(scene, keep_log)
+        self._enter(self._types)
         self._notes: list[Array] = []
-        self._reached_alone = 0.0
-        self.crowded = -1  # the id of the circle whose contacts had no end
+        self.crowded = -1
 
     def _enter(self, arrays: World) -> None:
         """Take a world of arrays for its own."""
@@ -48,6 +62,15 @@ class Driver:
         # Fields of all records at once, each an array that shows what compiled code writes.
         self._state = modes.columns(arrays.state)
         self._moving = modes.columns(arrays.moving)
+
+    @abstractmethod
+    def run(self, time: float, at_most: int | None) -> int:
+        """Carry out all events up to a time, or about `at_most`; return DONE, BUDGET_SPENT or ENDLESS."""
+
+    @property
+    @abstractmethod
+    def reached(self) -> float:
+        """The time up to which everything has been done, s."""
 
     def get(self, name: str) -> Any:
         """Return a number of the world's state."""
@@ -62,71 +85,10 @@ class Driver:
         else:
             setattr(self.world.state[0], name, value)
 
-    @property
-    def reached(self) -> float:
-        """The time up to which everything has been done, s."""
-        if self._collide:
-            return float(self.get('epoch') + self.get('time'))
-        return self._reached_alone
-
-    def run(self, time: float, at_most: int | None) -> int:
-        """Carry out all events up to a time, or about `at_most`; return DONE, BUDGET_SPENT or ENDLESS."""
-        if self._collide:
-            return self._run_together(time, at_most)
-        return self._run_alone(time, at_most)
-
-    def _run_together(self, time: float, at_most: int | None) -> int:
-        budget = WITHOUT_END if at_most is None else at_most
-        # Asked for only if it matters: among few circles the asking would be half of the work.
-        last = 0 if at_most is None else self.get('events') + at_most
-        while True:
-            why = self._mode.run(self.world, time, budget)
-            if why == LOG_FULL:
-                self._empty_log()
-            elif why == LIST_FULL:
-                self._make_room()
-            else:
-                if why == ENDLESS:
-                    self._note_crowded()
-                return why
-            if at_most is not None:
-                budget = last - self.get('events')
-
-    def _run_alone(self, time: float, at_most: int | None) -> int:
-        """Run circle by circle, where steps of work are in no order of time: to do fewer is to go less far."""
-        until = time
-        if at_most is not None:
-            # A circle that travels a radius seldom has more than one contact.
-            radii = max(1.0, at_most / len(self.world.moving))
-            until = min(time, self._reached_alone + radii * self.world.span / build.RADII_PER_SPAN)
-        while (why := self._mode.run_alone(self.world, until)) == LOG_FULL:
-            self._empty_log()
-        if why == ENDLESS:
-            self._note_crowded()
-            self._go_back_to(self._reached_alone)
-            return ENDLESS
-        self._reached_alone = until
-        return DONE if until == time else BUDGET_SPENT
-
     def _note_crowded(self) -> None:
         """Remember whose turn it was."""
         circle = self.world.moving[self.world.tree_who[1]]
         self.crowded = int(circle['id'] if self._mode.takes_arrays else circle.id)
-
-    def _go_back_to(self, time: float) -> None:
-        """Undo what single circles have done beyond a time, by going there once more from the start."""
-        notes = self.drain()
-        self._notes = [notes[notes['time'] <= time]]
-        keep_log = self.get('keep_log')
-        self._enter(build.build(self._scene, keep_log=False))
-        self._mode.run_alone(self.world, time)
-        self.set('keep_log', keep_log)
-
-    def _make_room(self) -> None:
-        arrays = self.world
-        if not self._mode.takes_arrays:
-            arrays = modes.to_arrays(self.world, self._types)
-        self._enter(build.with_more_room(arrays))
 
     def _empty_log(self) -> None:
         count = self.get('notes')
@@ -145,15 +107,13 @@ class Driver:
         self._empty_log()
         notes = np.concatenate([np.zeros(0, NOTE), *self._notes])
         self._notes = []
-        if not self._collide:  # circle by circle, so far
-            notes = notes[np.lexsort((notes['a'], notes['time']))]
         return notes
 
     def positions(self, time: float) -> NDArray[np.float64]:
         """Return where the moving circles are at a time that has been reached, (n, 2), m."""
-        moving = self.world.moving
-        rows = np.empty((len(moving), 2))
-        self._mode.read_positions(moving, time - self.get('epoch'), rows)
+        world = self.world
+        rows = np.empty((len(world.moving), 2))
+        self._mode.read_positions(world.moving, world.state, time, rows)
         return rows
 
     def velocities(self) -> NDArray[np.float64]:
@@ -166,3 +126,74 @@ class Driver:
             for circle in self.world.moving:
                 rows[circle.rank] = circle.vx, circle.vy
         return rows
+
+
+class Together(Driver):
+    """Circles that hit each other: event by event, in order of time."""
+
+    @property
+    def reached(self) -> float:
+        return float(self.get('epoch') + self.get('time'))
+
+    def run(self, time: float, at_most: int | None) -> int:
+        budget = WITHOUT_END if at_most is None else at_most
+        # Asked for only if it matters: among few circles the asking would be half of the work.
+        last = 0 if at_most is None else self.get('events') + at_most
+        while (why := self._mode.run(self.world, time, budget)) in (LOG_FULL, LIST_FULL):
+            if why == LOG_FULL:
+                self._empty_log()
+            else:
+                self._make_room()
+            if at_most is not None:
+                budget = last - self.get('events')
+        if why == ENDLESS:
+            self._note_crowded()
+        return why
+
+    def _make_room(self) -> None:
+        arrays = self.world
+        if not self._mode.takes_arrays:
+            arrays = modes.to_arrays(self.world, self._types)
+        self._enter(cells.with_more_room(arrays))
+
+
+class Alone(Driver):
+    """Circles that hit nobody who moves: each followed on its own, where steps of work are in no order of time."""
+
+    def __init__(self, scene: Scene, keep_log: bool, mode: modes.Mode) -> None:
+        super().__init__(scene, keep_log, mode)
+        self._reached = 0.0
+
+    @property
+    def reached(self) -> float:
+        return self._reached
+
+    def run(self, time: float, at_most: int | None) -> int:
+        until = time if at_most is None else min(time, self._about(at_most))
+        while (why := self._mode.run_alone(self.world, until)) == LOG_FULL:
+            self._empty_log()
+        if why == ENDLESS:
+            self._note_crowded()
+            self._go_back_to(self._reached)
+            return ENDLESS
+        self._reached = until
+        return DONE if until == time else BUDGET_SPENT
+
+    def _about(self, at_most: int) -> float:
+        """Return a time up to which there is about so much to do: to do less is to go less far."""
+        # A circle that travels a radius seldom has more than one contact.
+        radii = max(1.0, at_most / len(self.world.moving))
+        return self._reached + radii * self.world.span / build.RADII_PER_SPAN
+
+    def _go_back_to(self, time: float) -> None:
+        """Undo what single circles have done beyond a time, by going there once more from the start."""
+        notes = self.drain()
+        self._notes = [notes[notes['time'] <= time]]
+        keep_log = self.get('keep_log')
+        self._enter(build.build(self._scene, keep_log=False))
+        self._mode.run_alone(self.world, time)
+        self.set('keep_log', keep_log)
+
+    def drain(self) -> Array:
+        notes = super().drain()
+        return notes[np.lexsort((notes['a'], notes['time']))]

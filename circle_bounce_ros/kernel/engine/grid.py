@@ -21,7 +21,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from circle_bounce_ros.kernel.engine.records import DOWN, EVERYWHERE, LEFT, Record, World
+from circle_bounce_ros.kernel.engine.records import (
+    CIRCLES_AT,
+    COUNT_AT,
+    DOWN,
+    EVERYWHERE,
+    LEFT,
+    REACH_AT,
+    Record,
+    World,
+)
 from circle_bounce_ros.kernel.impact import NEVER
 
 # Cells are wider than they need be by this fraction, so that rounding cannot put two circles that touch out
@@ -41,13 +50,15 @@ def place_at(circle: Record, time: float) -> tuple[Any, Any]:
     return circle.x + circle.vx * past, circle.y + circle.vy * past
 
 
-def read_positions(moving: Any, time: float, rows: Any) -> None:
+def read_positions(moving: Any, state: Any, time: float, rows: Any) -> None:
     """Write where circles are at a time, (n, 2), in the order of the scene."""
+    until = time - state[0].epoch
     for i in range(len(moving)):
         circle = moving[i]
-        x, y = place_at(circle, time)
-        rows[circle.rank, 0] = x
-        rows[circle.rank, 1] = y
+        # As `place_at`, whose call would be a tenth of what a frame of one ball costs.
+        past = until - circle.time
+        rows[circle.rank, 0] = circle.x + circle.vx * past
+        rows[circle.rank, 1] = circle.y + circle.vy * past
 
 
 # ------------------------------------------------------------------ lists
@@ -59,29 +70,43 @@ def list_number(table: Record, column: int, row: int) -> int:
     return number
 
 
+def list_at(table: Record, cell: int) -> int:
+    """Return where the list of a cell begins; cell numbers beyond the last start again."""
+    at: int = table.first + table.stride * (cell & table.mask)
+    return at
+
+
 def put(world: World, table: Record, cell: int, i: int) -> None:
     """Append circle i to a list that has room."""
-    count = world.filled[table.first + cell]
-    world.slots[table.slot + table.room * cell + count] = i
-    world.filled[table.first + cell] = count + 1
+    at = list_at(table, cell)
+    count = world.lists[at + COUNT_AT]
+    world.lists[at + CIRCLES_AT + count] = i
+    world.lists[at + COUNT_AT] = count + 1
 
 
 def take(world: World, table: Record, cell: int, i: int) -> None:
     """Take circle i out of a list; the last one takes its place."""
-    slots = world.slots
-    left = world.filled[table.first + cell] - 1
-    world.filled[table.first + cell] = left
-    k = table.slot + table.room * cell
-    last = slots[k + left]
-    while slots[k] != i:
+    lists = world.lists
+    at = list_at(table, cell)
+    left = lists[at + COUNT_AT] - 1
+    lists[at + COUNT_AT] = left
+    k = at + CIRCLES_AT
+    last = lists[k + left]
+    while lists[k] != i:
         k += 1
-    slots[k] = last
+    lists[k] = last
 
 
 def has_room(world: World, table: Record, cell: int) -> bool:
     """Return whether a list can take one more."""
-    room: bool = world.filled[table.first + cell] < table.room
+    count = world.lists[list_at(table, cell) + COUNT_AT]
+    room: bool = CIRCLES_AT + count < table.stride
     return room
+
+
+def reach_of(world: World, table: Record, cell: int) -> Record:
+    """Return what is locked in reach of a cell."""
+    return world.reaches[world.lists[list_at(table, cell) + REACH_AT]]
 
 
 # ------------------------------------------------------------------ from cell to cell
@@ -247,11 +272,9 @@ def gather_around(
 ) -> int:
     """Append the lists of the cells in reach of one, or of the row that came into it through a side."""
     near = world.near
-    slots = world.slots
-    filled = world.filled
+    lists = world.lists
     first = table.first
-    slot = table.slot
-    room = table.room
+    stride = table.stride
     mask = table.mask
     row = 2 * reach + 1
     begin = table.around + (reach - 1) * CELLS_AROUND_NEAR + row * side
@@ -259,14 +282,14 @@ def gather_around(
     if side == EVERYWHERE:
         end = begin + row * row
     for k in range(begin, end):
-        number = (cell + world.around[k]) & mask
-        members = filled[first + number]
-        at = slot + room * number
+        at = first + stride * ((cell + world.around[k]) & mask)  # `list_at`, its fields read once
+        members = lists[at + COUNT_AT]
+        at += CIRCLES_AT
         # Most lists hold none, one or two: copying two always is quicker than asking.
-        near[count] = slots[at]
-        near[count + 1] = slots[at + 1]
+        near[count] = lists[at]
+        near[count + 1] = lists[at + 1]
         for m in range(2, members):
-            near[count + m] = slots[at + m]
+            near[count + m] = lists[at + m]
         count += members
     return count
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from circle_bounce_ros.kernel.engine.ahead import look_ahead
 from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide, move_to
 from circle_bounce_ros.kernel.engine.grid import cross
 from circle_bounce_ros.kernel.engine.plan import plan, plan_later
@@ -55,10 +56,13 @@ def run(world: World, time: float, at_most: int) -> int:
                 bounce_off(world, i, now)
         state.time = now
         state.events += 1
+        winner = i
         while i >= 0:  # plans for the circle and for the one it has hit
             plan(world, i, now, side)
             i = partner
             partner = -1
+        if world.looks_ahead:
+            look_ahead(world, winner)
     return DONE
 
 

@@ -32,7 +32,7 @@ class Mode(NamedTuple):
 
     run: Callable[[World, float, int], int]
     run_alone: Callable[[World, float], int]
-    read_positions: Callable[[Any, float, NDArray[np.float64]], None]
+    read_positions: Callable[[Any, Any, float, NDArray[np.float64]], None]
     takes_arrays: bool
 
 
@@ -73,7 +73,7 @@ def compile_ahead() -> bool:
             compiled().run(world, 1.0, 100)
         else:
             compiled().run_alone(world, 1.0)
-        compiled().read_positions(world.moving, 1.0, np.empty((2, 2)))
+        compiled().read_positions(world.moving, world.state, 1.0, np.empty((2, 2)))
     compilation.say_ready()
     return True
 
@@ -90,6 +90,7 @@ def choose(count: int, wanted: bool | None) -> Mode:
 
 def to_objects(world: World) -> World:
     """Return a world of arrays as one of objects and lists."""
+    world = world._replace(looks_ahead=False)
     parts = (_to_list(part) if isinstance(part, np.ndarray) else part for part in world)
     return cast(World, _PlainWorld(*parts))
 

@@ -7,7 +7,7 @@ never from the moment of looking. So neither the grid nor the order of looking c
 
 from __future__ import annotations
 
-from circle_bounce_ros.kernel.engine.grid import gather, plan_cell
+from circle_bounce_ros.kernel.engine.grid import gather, plan_cell, reach_of
 from circle_bounce_ros.kernel.engine.records import (
     CIRCLE,
     EVERYWHERE,
@@ -91,8 +91,8 @@ def plan_locked(world: World, circle: Record) -> None:
     vy = circle.vy
     time = circle.time
     radius = circle.radius
-    cell = world.cells[world.tables[circle.level].first + circle.cell]
-    for k in range(cell.first_post, cell.end_post):
+    reach_of_cell = reach_of(world, world.tables[circle.level], circle.cell)
+    for k in range(reach_of_cell.first_post, reach_of_cell.end_post):
         number = world.post_numbers[k]
         post = world.posts[number]
         reach = radius + post.radius
@@ -101,7 +101,7 @@ def plan_locked(world: World, circle: Record) -> None:
             best = due
             circle.kind = post.kind
             circle.partner = number
-    for k in range(cell.first_flat, cell.end_flat):
+    for k in range(reach_of_cell.first_flat, reach_of_cell.end_flat):
         number = world.flat_numbers[k]
         flat = world.flats[number]
         due = time + time_to_wall_xy(

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 # What a circle is going to touch; the numbers of the first four are those of the contact log.
 CIRCLE, LOCKED, WALL, WALL_END, NOTHING = 0, 1, 2, 3, 4
@@ -38,7 +39,10 @@ POST = np.dtype([('x', 'f8'), ('y', 'f8'), ('radius', 'f8'), ('kind', 'i8'), ('i
 FLAT = np.dtype([(name, 'f8') for name in ('x', 'y', 'nx', 'ny', 'length')] + [('id', 'i8')])
 
 # What is locked in reach of a cell: ranges of `world.post_numbers` and `world.flat_numbers`.
-CELL = np.dtype([(name, 'i4') for name in ('first_post', 'end_post', 'first_flat', 'end_flat')])
+REACH = np.dtype([(name, 'i4') for name in ('first_post', 'end_post', 'first_flat', 'end_flat')])
+
+# The list of a cell: how many circles are in it, the number of its reach, then the circles.
+COUNT_AT, REACH_AT, CIRCLES_AT = 0, 1, 2
 
 # One level of the grid, or the guests on it: see `grid`.
 TABLE = np.dtype(
@@ -46,7 +50,7 @@ TABLE = np.dtype(
     + [('fits', 'f8')]  # the radius of the largest resident, m
     + [('shift', 'i8')]  # its cells are 2^shift cells of the finest level wide
     + [('bits', 'i8'), ('mask', 'i8')]  # of the number of a list
-    + [('first', 'i8'), ('slot', 'i8'), ('room', 'i8')]  # its first list and slot; slots per list
+    + [('first', 'i8'), ('stride', 'i8')]  # its first list in `world.lists`; from one to the next
     + [('around', 'i8')]  # where its neighbours begin in `world.around`
     + [('columns', 'i8'), ('rows', 'i8')]  # of home
 )
@@ -70,11 +74,27 @@ LAYOUTS = {
     'Moving': MOVING,
     'Post': POST,
     'Flat': FLAT,
-    'Cell': CELL,
+    'Reach': REACH,
     'Table': TABLE,
     'Note': NOTE,
     'State': STATE,
 }
+
+CACHE_LINE = 64
+
+
+def aligned_zeros(count: int, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Return zeros that begin at the start of a cache line."""
+    raw = np.zeros(count * dtype.itemsize + CACHE_LINE, np.uint8)
+    skip = -raw.ctypes.data % CACHE_LINE
+    return raw[skip : skip + count * dtype.itemsize].view(dtype)
+
+
+def aligned_copy(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a copy that begins at the start of a cache line."""
+    copy = aligned_zeros(len(array), array.dtype)
+    copy[:] = array
+    return copy
 
 
 class World(NamedTuple):
@@ -84,9 +104,8 @@ class World(NamedTuple):
     posts: Any
     flats: Any
     tables: Any  # of each level the residents, then of each level the guests
-    cells: Any  # of each level, one after the other
-    filled: Any  # how many circles are in each list
-    slots: Any  # the lists
+    lists: Any  # of each table, one after the other
+    reaches: Any  # the first one is empty
     near: Any  # scratch: who is in reach
     around: Any  # of each level, offsets to the cells behind each side and to all, for a reach of 1 and of 2
     away: Any  # the circles that are in no cell
@@ -97,6 +116,8 @@ class World(NamedTuple):
     log: Any
     state: Any  # one record: what changes and is no array
     leaf: int  # the first leaf of the tournament
+    rounds: int  # matches from a leaf to the top
+    looks_ahead: bool  # in compiled code: see `ahead`
     levels: int
     x0: float  # where cell (0, 0) of every level begins
     y0: float
