@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,26 +26,40 @@ from circle_bounce_ros.encoding.poses import (
     TwistStampedEncoder,
 )
 from circle_bounce_ros.encoding.times import ClockEncoder, TimeReferenceEncoder
-from circle_bounce_ros.kernel import Circle, Scene
+from circle_bounce_ros.kernel import Circle, Scene, Simulation
 
 DEPTH = 10  # messages that are kept for a slow subscriber
 LATCHED_DEPTH = 1
 
 
-class State(Protocol):
-    """The moving circles at one instant, and the contacts since the last one."""
+class State:
+    """
+    The moving circles at one instant, read from the kernel when somebody asks and only once.
 
-    @property
+    To be used before the simulation goes on.
+
+    Attributes
+    ----------
+    positions : (n, 2) float, m
+    velocities : (n, 2) float, m/s
+
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+
+    @cached_property
     def positions(self) -> NDArray[np.float64]:
-        """(n, 2), m."""
+        return self._simulation.positions
 
-    @property
+    @cached_property
     def velocities(self) -> NDArray[np.float64]:
-        """(n, 2), m/s."""
+        return self._simulation.velocities
 
-    @property
+    @cached_property
     def contacts(self) -> NDArray[np.void]:
-        """(k,), dtype `kernel.CONTACT`."""
+        """The contacts logged since the last time they were read, (k,), dtype `kernel.CONTACT`."""
+        return self._simulation.drain_contacts()
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,11 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator
-from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from circle_bounce_ros.encoding.stamps import kernel_time
-from circle_bounce_ros.encoding.topics import Moment
+from circle_bounce_ros.encoding.topics import Moment, State
 from circle_bounce_ros.kernel import Circle, Scene, Simulation
 from circle_bounce_ros.offline.ticks import Tick
 
@@ -39,25 +35,6 @@ class Sink(Protocol):
 
     def abort(self) -> None:
         """Let go of it as it stands, after an error."""
-
-
-class Snapshot:
-    """The state of a simulation, read when somebody asks and only once."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-
-    @cached_property
-    def positions(self) -> NDArray[np.float64]:
-        return self._simulation.positions
-
-    @cached_property
-    def velocities(self) -> NDArray[np.float64]:
-        return self._simulation.velocities
-
-    @cached_property
-    def contacts(self) -> NDArray[np.void]:
-        return self._simulation.drain_contacts()
 
 
 def moments(
@@ -89,7 +66,7 @@ def moments(
                 return
         if stop():
             return
-        yield Moment(tick.stamp_ns, tick.scene_ns, Snapshot(simulation))
+        yield Moment(tick.stamp_ns, tick.scene_ns, State(simulation))
 
 
 def write_scene(scene: Scene, folder: Path) -> None:

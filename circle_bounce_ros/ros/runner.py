@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from functools import cached_property
-
-import numpy as np
-from numpy.typing import NDArray
 
 from circle_bounce_ros.encoding.stamps import SECONDS_PER_NS, kernel_time
+from circle_bounce_ros.encoding.topics import State
 from circle_bounce_ros.kernel import (
     Scene,
     Simulation,
@@ -31,34 +28,6 @@ def first_ns_after(seconds: float) -> int:
     while scene_ns > 0 and kernel_time(scene_ns - 1) >= seconds:
         scene_ns -= 1
     return scene_ns
-
-
-class State:
-    """
-    The moving circles at one instant, read from the kernel when somebody asks and only once.
-
-    Attributes
-    ----------
-    positions : (n, 2) float, m
-    velocities : (n, 2) float, m/s
-
-    """
-
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-
-    @cached_property
-    def positions(self) -> NDArray[np.float64]:
-        return self._simulation.positions
-
-    @cached_property
-    def velocities(self) -> NDArray[np.float64]:
-        return self._simulation.velocities
-
-    @cached_property
-    def contacts(self) -> NDArray[np.void]:
-        """The contacts logged since the last time they were read, (k,), dtype `kernel.CONTACT`."""
-        return self._simulation.drain_contacts()
 
 
 def start(scene: Scene) -> Simulation:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from circle_bounce_ros.encoding.topics import Moment, State
 from circle_bounce_ros.kernel import Simulation
-from circle_bounce_ros.ros.publishers import Moment, Publishers
-from circle_bounce_ros.ros.runner import State
+from circle_bounce_ros.ros.publishers import Publishers
 from circle_bounce_ros.scene_file import load_scene
 
 
