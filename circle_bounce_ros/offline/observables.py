@@ -32,6 +32,8 @@ LARGEST_MARGIN = 0.25
 LAGS = (3.0, 6.0)
 # How far from a wall they begin, as a part of the shorter side.
 DEEP = 0.3
+# That must be so many standard deviations of the displacement along an axis, or walls have turned circles back.
+DEVIATIONS = 2.5
 
 # Column, unit and meaning of a row of the summary.
 COLUMNS: dict[str, tuple[str, str]] = {
@@ -46,7 +48,10 @@ COLUMNS: dict[str, tuple[str, str]] = {
     'pressure': ('N/m', 'of the bulk, from the virial'),
     'compressibility': ('1', 'Z = pressure / (number density * kT), in the bulk'),
     'pressure_walls': ('N/m', 'impulse on a box per time and length of border open to centres'),
-    'diffusion': ('m^2/s', 'growth of the mean square displacement / 4'),
+    'diffusion': (
+        'm^2/s',
+        'growth of the mean square displacement / 4; none without a warm-up, or where walls are too near',
+    ),
     'energy_error': ('1', 'largest change of the kinetic energy, relative'),
 }
 
@@ -171,8 +176,8 @@ class Observables:
             self._began = time
             return
         if self._began is None:
-            self._began = 0.0
             # Nothing was warmed up: the contacts of this very interval belong to the measurement.
+            self._began = 0.0
         if self._spreading is None:
             self._spreading = self._start_spreading(step, state.positions)
         self._count(contacts)
@@ -182,7 +187,11 @@ class Observables:
         began = self._began or 0.0
         free = began * len(positions) / self._warm_contacts if self._warm_contacts else math.inf
         deep = inside_walls(self._simulation.scene, math.inf, DEEP)
-        return Spreading(step, free, deep)
+        if deep is None:
+            return Spreading(step, free)
+        # The rim is DEEP of the shorter side, and the window what two of it leave.
+        shorter = min(high - low for low, high in zip(*deep, strict=True)) / (1.0 - 2.0 * DEEP)
+        return Spreading(step, free, deep, DEEP * shorter)
 
     def _count(self, contacts: NDArray[np.void]) -> None:
         for kind in ContactKind:
@@ -253,16 +262,21 @@ class Spreading:
         Mean free time, which sets the lags; `inf` for unknown.
     window : Window, optional
         Where a way has to begin, to be far from walls.
+    rim : float, m
+        How far that is from them; `inf` without walls.
 
     """
 
-    def __init__(self, step: float, free: float, window: Window | None) -> None:
+    def __init__(
+        self, step: float, free: float, window: Window | None = None, rim: float = math.inf
+    ) -> None:
         self._step = step
         self._known = math.isfinite(free)
         self._lags = [max(k + 1, round(lag * free / step)) if self._known else k + 1
                       for k, lag in enumerate(LAGS)]  # fmt: skip
         self._lags[1] = max(self._lags[1], self._lags[0] + 1)
         self._window = window
+        self._rim = rim
         self._age = 0
         self._origin: NDArray[np.float64] | None = None
         self._from_inside: NDArray[np.bool_] | slice = slice(None)
@@ -294,4 +308,6 @@ class Spreading:
         if not self._known or not all(self._ways):
             return None
         early, late = (s / n for s, n in zip(self._squares, self._ways, strict=True))
+        if DEVIATIONS * math.sqrt(late / 2.0) > self._rim:
+            return None
         return (late - early) / (4.0 * self._step * (self._lags[1] - self._lags[0]))

@@ -8,11 +8,13 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-# B_n / B_2^(n - 1) of hard disks, n = 2 ... 10 (Clisby and McCoy 2006).
+# B_n / B_2^(n - 1) of hard disks, n = 2 ... 10, from table 1 of N. Clisby and B. M. McCoy, "Ninth and tenth order
+# virial coefficients for hard spheres in D dimensions", J. Stat. Phys. 122 (2006) 15-57. The third and the fourth are
+# known exactly, the others to within (1), (42), (43), (34), (35), (80) of their last digits.
 VIRIAL = (
     1.0,
-    0.78200444,
-    0.53223180,
+    0.78200444,  # 4/3 - sqrt(3) / pi
+    0.53223181,  # 2 - 9 sqrt(3) / (2 pi) + 10 / pi^2
     0.33355604,
     0.1988425,
     0.1148728,
@@ -26,7 +28,8 @@ def contact_value(packing: float) -> float:
     """
     Return how much likelier two disks touch than if the others were not there (Henderson 1975).
 
-    chi = (1 - 7 phi / 16) / (1 - phi)^2, good to half a percent up to a packing fraction of 0.6.
+    chi = (1 - 7 phi / 16) / (1 - phi)^2. The pressure that follows is off by 0.03 % at a packing fraction of 0.3, by
+    0.14 % at 0.4, by 0.5 % at 0.5 and by 1.2 % at 0.6.
     """
     return (1.0 - 7.0 * packing / 16.0) / (1.0 - packing) ** 2
 
@@ -40,7 +43,7 @@ def virial_series(packing: float) -> float:
     """
     Return Z of equal hard disks from ten virial coefficients, as their Pade approximant [4/5].
 
-    Where Henderson's formula is off by up to half a percent, this is exact for the purpose of a simulation.
+    The errors of the coefficients make 1e-5 of it at a packing fraction of 0.45, 5e-5 at 0.5.
     """
     over, under = _pade()
     return float(np.polyval(over[::-1], packing) / np.polyval(under[::-1], packing))

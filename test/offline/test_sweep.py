@@ -10,18 +10,14 @@ import signal
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 from conftest import files_of, wait_until
 from pyarrow import parquet
 from rosbags.rosbag2 import Reader
 
-from circle_bounce_ros.kernel import ContactKind, Simulation
-from circle_bounce_ros.offline import theory
 from circle_bounce_ros.offline.plan import PlanError, load_plan, restore
 from circle_bounce_ros.offline.run import perform, plan_of
 from circle_bounce_ros.offline.sweep import main
-from circle_bounce_ros.scene_file import load_scene
 
 SMALL = {
     'scene': './box.yaml',
@@ -266,79 +262,3 @@ def test_a_folder_of_another_sweep_is_refused(tmp_path, capsys, write_sweep):
     assert {n: d for n, d in files_of(folder).items() if n != '.lock'} == before
     with pytest.raises(ValueError, match='holds another sweep'):
         plan_of(str(folder), 'another digest')
-
-
-def row_of(tmp_path, write_sweep, **changes):
-    (row,) = perform_here(write_sweep(parameters={}, seeds=[1], **changes), tmp_path / 'one')
-    assert 'error' not in row, row
-    return row
-
-
-def test_a_ball_between_two_walls_has_the_numbers_worked_out_by_hand(
-    tmp_path, write_sweep, write_scene
-):
-    # 1.8 m from contact to contact at 1 m/s and 2 kg, for 90 s; from the middle, so 50 contacts.
-    write_scene(
-        'box',
-        circles=[{'position': [1, 1], 'velocity': [1, 0], 'radius': 0.1, 'mass': 2.0}],
-        walls=[{'box': {'min': [0, 0], 'max': [2, 2]}}],
-    )
-    row = row_of(tmp_path, write_sweep, duration=90.0, warm_up=0.0)
-    assert (row['contacts'], row['pair_contacts'], row['circles']) == (50, 0, 1)
-    assert row['contact_rate'] == pytest.approx(50 / 90)
-    assert row['mean_free_path'] == pytest.approx(1.8)
-    assert row['temperature'] == pytest.approx(1.0)  # m v^2 / 2
-    # Each contact gives 2 m v = 4 N s, on 4 walls of 1.8 m that its centre can touch.
-    assert row['pressure_walls'] == pytest.approx(50 * 4 / 90 / 7.2)
-    assert row['energy_error'] < 1e-15
-    assert row['measured'] == pytest.approx(90.0)
-
-
-def test_the_pressure_is_that_of_the_contacts_in_the_window(tmp_path, write_sweep):
-    row = row_of(tmp_path, write_sweep)
-    plan = load_plan(write_sweep(parameters={}, seeds=[1]))
-    scene = plan.build(plan.run(0))
-    simulation = Simulation(scene, record_contacts=True)
-    simulation.advance_to(1.0)
-    simulation.drain_contacts()
-    radius = simulation.radii[0]
-    rim = min(10 * radius, 0.5)
-    kinetic, inside_count = [], []
-    for k in range(21, 81):
-        simulation.advance_to(k / 20)
-        x, y = simulation.positions.T
-        inside = (np.abs(x - 1) < 1 - rim) & (np.abs(y - 1) < 1 - rim)
-        kinetic.append(0.5 * np.square(simulation.velocities[inside]).sum())
-        inside_count.append(inside.sum())
-    log = simulation.drain_contacts()
-    pairs = log[log['kind'] == ContactKind.CIRCLE]
-    near = (np.abs(pairs['x'] - 1) < 1 - rim) & (np.abs(pairs['y'] - 1) < 1 - rim)
-    area = (2 - 2 * rim) ** 2
-    # P A = N kT + sum(2 r J) / (2 T)
-    expected = (np.mean(kinetic) + radius * pairs['impulse'][near].sum() / 3.0) / area
-    assert row['pressure'] == pytest.approx(expected, rel=1e-9)  # roundings
-    packing = np.mean(inside_count) * math.pi * radius**2 / area
-    assert row['packing'] == pytest.approx(packing, rel=1e-9)
-
-
-def test_a_gas_has_the_pressure_path_and_diffusion_of_theory(tmp_path, write_sweep):
-    row = row_of(tmp_path, write_sweep, scene='gas', duration=30.0, warm_up=5.0)
-    scene = load_scene('gas', 1)
-    radius = scene.circles[0].radius
-    packing, thermal = row['packing'], math.sqrt(row['temperature'])
-    # One run of 25 s in a window scatters by 0.5 %: three times that.
-    assert row['compressibility'] == pytest.approx(theory.virial_series(packing), rel=0.015)
-    # Over the whole box, whose rim has fewer pairs but walls to touch.
-    assert row['mean_free_path'] == pytest.approx(theory.mean_free_path(radius, packing), rel=0.05)
-    # Enskog's first order is known to be low by up to a tenth at this packing; 300 circles, 60 times.
-    diffusion = theory.diffusion(radius, packing, thermal)
-    assert 0.95 * diffusion < row['diffusion'] < 1.2 * diffusion
-
-
-def test_theory_is_what_the_literature_says():
-    # Erpenbeck and Luban, Phys. Rev. A 32 (1985): Z of hard disks at A / A0 = 5, 2 and 1.8, where A0 is the
-    # area of the closest packing, pi / sqrt(12) of phi. Read off to their digits.
-    closest = math.pi / math.sqrt(12.0)
-    for expanded, expected in ((5.0, 1.4983), (2.0, 3.4243), (1.8, 4.1715)):
-        assert theory.virial_series(closest / expanded) == pytest.approx(expected, rel=1e-3)
-        assert theory.compressibility(closest / expanded) == pytest.approx(expected, rel=6e-3)
