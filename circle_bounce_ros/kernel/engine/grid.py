@@ -53,8 +53,7 @@ def place_at(circle: Record, time: float) -> tuple[Any, Any]:
 def read_positions(moving: Any, state: Any, time: float, rows: Any) -> None:
     """Write where circles are at a time, (n, 2), in the order of the scene."""
     until = time - state[0].epoch
-    for i in range(len(moving)):
-        circle = moving[i]
+    for circle in moving:
         # As `place_at`, whose call would be a tenth of what a frame of one ball costs.
         past = until - circle.time
         rows[circle.rank, 0] = circle.x + circle.vx * past
