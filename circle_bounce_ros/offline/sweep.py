@@ -19,7 +19,7 @@ from tqdm import tqdm
 
 from circle_bounce_ros.offline.plan import Plan, PlanError, load_plan
 from circle_bounce_ros.offline.run import PLAN, RUNS, perform, remove_unfinished
-from circle_bounce_ros.offline.stopping import Stopping
+from circle_bounce_ros.offline.stopping import Stopping, without_interrupts
 from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, replace, write_summary
 
 COMMAND = 'bounce_sweep'
@@ -166,16 +166,15 @@ def connect(chosen: argparse.Namespace, runs: int) -> Iterator[Any]:
                 yield client
             return
         workers = min(chosen.workers or len(os.sched_getaffinity(0)), runs)
-        with (
-            LocalCluster(
+        with without_interrupts():
+            cluster = LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 dashboard_address=None,
                 host='127.0.0.1',
                 silence_logs=logging.CRITICAL,
-            ) as cluster,
-            Client(cluster) as client,
-        ):
+            )
+        with cluster, Client(cluster) as client:
             yield client
 
 

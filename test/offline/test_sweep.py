@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import json
 import math
 import os
+import pty
 import signal
+import struct
 import subprocess
 import sys
+import termios
+import threading
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
-from conftest import files_of, wait_until
+from conftest import ROOT, files_of, wait_until
 from pyarrow import parquet
 from rosbags.rosbag2 import Reader
 
@@ -156,6 +163,102 @@ def test_started_again_after_a_kill_it_does_only_what_is_missing(tmp_path, bounc
     before = results_of(folder)
     assert '24 of 24 runs done' in bounce.run('bounce_sweep', sweep, '-o', folder)
     assert results_of(folder) == before
+
+
+def test_after_ctrl_c_on_a_terminal_it_says_what_is_missing_and_goes_on_later(
+    tmp_path, bounce, write_sweep
+):
+    sweep = write_sweep(seeds={'first': 0, 'count': 40}, duration=10.0)
+    folder = tmp_path / 'out'
+    log = folder / 'rows.jsonl'
+    with Terminal('bounce_sweep', sweep, '-o', folder, '--workers', 2) as terminal:
+        wait_until(lambda: log.exists() and log.read_text().count('\n') >= 3, 'three runs')
+        # To the workers as well, as a terminal does.
+        terminal.press_ctrl_c()
+        status, shown = terminal.end()
+    assert status == 128 + signal.SIGINT
+    assert 'Traceback' not in shown
+    assert 'of 120 runs are missing: start it again' in shown
+    assert '/120 [' in shown  # the bar
+    done = rows_of(folder)
+    assert 3 <= len(done) < 120
+    assert '120 of 120 runs done' in bounce.run('bounce_sweep', sweep, '-o', folder)
+    assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
+
+
+class Terminal:
+    """A command on a terminal of its own."""
+
+    def __init__(self, command, *arguments):
+        self._ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack('HHHH', 30, 100, 0, 0))
+        module = f'circle_bounce_ros.offline.{command.removeprefix("bounce_")}'
+        self._process = subprocess.Popen(
+            [sys.executable, '-m', module, *map(str, arguments)],
+            cwd=ROOT,
+            stdin=theirs,
+            stdout=theirs,
+            stderr=theirs,
+            start_new_session=True,
+            preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
+        )
+        os.close(theirs)
+        self._shown = b''
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self):
+        # Reading fails when the last process of the terminal has ended.
+        with suppress(OSError):
+            while more := os.read(self._ours, 1 << 16):
+                self._shown += more
+
+    def press_ctrl_c(self):
+        os.write(self._ours, b'\x03')
+
+    def end(self):
+        """Wait for the end and return the exit status and all that was shown."""
+        status = self._process.wait(timeout=60)
+        self._reader.join(timeout=60)
+        return status, self._shown.decode()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._process.kill()
+        self._process.wait(timeout=60)
+        self._reader.join(timeout=60)
+        os.close(self._ours)
+
+
+def workers_of(process):
+    """Return the process numbers of the workers that a sweep has started."""
+    found = []
+    for folder in Path('/proc').glob('[0-9]*'):
+        # Processes end while one looks.
+        with suppress(OSError):
+            parent = int((folder / 'stat').read_text().rpartition(')')[2].split()[1])
+            if parent == process.pid and b'spawn_main' in (folder / 'cmdline').read_bytes():
+                found.append(int(folder.name))
+    return found
+
+
+def has_a_run_in_its_hands(folder):
+    return bool(list(folder.glob('runs/*/.*')))
+
+
+def test_a_local_worker_killed_in_the_middle_is_replaced(tmp_path, bounce, write_sweep):
+    sweep = write_sweep(record='bag', seeds={'first': 0, 'count': 2}, duration=20.0)
+    folder = tmp_path / 'out'
+    process = bounce.start('bounce_sweep', sweep, '-o', folder, '--workers', 1)
+    wait_until(lambda: has_a_run_in_its_hands(folder), 'a run at work')
+    (worker,) = workers_of(process)
+    os.kill(worker, signal.SIGKILL)
+    out, error = process.communicate(timeout=120)
+    assert process.returncode == 0, error
+    assert '6 of 6 runs done, 0 failed' in out
+    assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
 
 
 def test_a_failing_run_is_reported_with_its_seed_and_stops_no_other(tmp_path, bounce, write_sweep):
