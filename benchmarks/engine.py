@@ -1,5 +1,5 @@
 """
-The engine beside its peers and beside itself: `python -m benchmarks.engine [--short] [--into FOLDER]`.
+The engine beside its peers: `python -m benchmarks.engine [--short] [--into FOLDER]`.
 
 Numbers go into engine.json of docs/benchmarks; `benchmarks.report` makes tables and figures of them.
 """
@@ -7,22 +7,16 @@ Numbers go into engine.json of docs/benchmarks; `benchmarks.report` makes tables
 from __future__ import annotations
 
 import argparse
-import gc
-import json
-import os
-import subprocess
-import sys
-import tempfile
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from benchmarks import accuracy, machine, results, scenes
+from benchmarks import accuracy, itself, machine, results, scenes
 from benchmarks.contestants import Billiards, Box2D, Contestant, Ours, Pymunk
-from benchmarks.measure import LONG, SHORT, Pace, Work, in_turn, one_turn, ratios
+from benchmarks.measure import LONG, SHORT, Pace, frames_of, in_turn, one_turn, ratios
 from benchmarks.rows import row
-from circle_bounce_ros.kernel import Scene, Simulation, compile_ahead
+from circle_bounce_ros.kernel import Scene, compile_ahead
 
 Row = dict[str, Any]
 Maker = Callable[[Scene], Contestant]
@@ -47,14 +41,14 @@ def run(pace: Pace) -> dict[str, Any]:
     rows = [
         *gases(pace, settings),
         *among_locked(pace, settings),
-        *by_itself(pace),
-        *compilation(pace),
+        *itself.rows(pace),
     ]
+    growth, cost = itself.cost_against_count(pace)
     return {
         'machine': machine.describe(),
         'settings': settings,
-        'rows': rows,
-        'cost': cost_against_count(pace),
+        'rows': rows + growth,
+        'cost': cost,
         'speed': ratio_against_speed(pace),
         'accuracy': accuracies(pace, settings),
     }
@@ -142,16 +136,6 @@ def per_frame(theirs: Sequence[float], ours: Sequence[float]) -> str:
     return f'{1e3 * min(ours):.3g} against {1e3 * min(theirs):.3g} ms a frame at best'
 
 
-def frames_of(one: Contestant) -> Work:
-    """Return the work of one frame."""
-
-    def work() -> float:
-        one.show_frame()
-        return 1.0
-
-    return work
-
-
 def beside_billiards(name: str, scene: Scene, pace: Pace, settings: dict[str, str]) -> list[Row]:
     """Return the line of the exact peer, whose frames take seconds."""
     ours, theirs = Ours(scene), Billiards(scene)
@@ -161,144 +145,6 @@ def beside_billiards(name: str, scene: Scene, pace: Pace, settings: dict[str, st
         cost = one_turn(frames_of(theirs), 0.0)
         pairs.append(cost / one_turn(frames_of(ours), pace.block))
     return [row(name, theirs.name, pairs, 'x faster', 1_000)]
-
-
-# ------------------------------------------------------------------ beside itself
-
-
-def by_itself(pace: Pace) -> list[Row]:
-    """Return the lines in which the engine is its own measure."""
-    count = min(1_000, pace.largest)
-    gas = scenes.gas(count)
-    compiled, plain = in_turn(
-        [contacts_of(Simulation(gas)), events_of(Simulation(gas, compiled=False))], pace
-    )
-    rows = [
-        row(
-            f'gas, {count:,} equal disks',
-            'itself, with numba',
-            [1e-6 / cost for cost in compiled],
-            'million contacts/s',
-            2,
-            4,
-        ),
-        row(
-            f'gas, {count:,} equal disks',
-            'itself, without numba',
-            [1.0 / cost for cost in plain],
-            'events/s',
-            40_000,
-            100_000,
-        ),
-    ]
-    sides = {n: scenes.in_a_polygon([scenes.Kind(count, 1.0)], scenes.PACKING, n) for n in (4, 12)}
-    square, tilted = in_turn([frames_of(Ours(sides[n])) for n in (4, 12)], pace)
-    rows.append(
-        row(
-            f'{count:,} disks in a box of 12 tilted walls',
-            'itself in a square',
-            ratios(tilted, square),
-            'x slower',
-            1.3,
-            1.1,
-            more_is_better=False,
-        )
-    )
-    return rows + unlike_equal_disks(pace)
-
-
-def unlike_equal_disks(pace: Pace) -> list[Row]:
-    """Return the lines of different sizes and of a thin gas, per contact."""
-    count = min(2_000, pace.largest)
-    wanted = {
-        'radii 1:10, 5 % large': (scenes.sizes(count, 10.0, 0.05), 3, 1.5),
-        'radii 1:100, 1 % large': (scenes.sizes(count, 100.0, 0.01), 6, 2),
-        'equal, packing 0.003': (scenes.gas(count, packing=0.003), 6, 3),
-    }
-    works = [contacts_of(Simulation(scenes.gas(count)))]
-    works += [contacts_of(Simulation(scene)) for scene, _, _ in wanted.values()]
-    equal, *others = in_turn(works, pace)
-    return [
-        row(
-            f'{count:,} disks, {name}',
-            'itself, equal radii, packing 0.3, per contact',
-            ratios(cost, equal),
-            'x slower',
-            least,
-            aim,
-            more_is_better=False,
-        )
-        for (name, (_, least, aim)), cost in zip(wanted.items(), others, strict=True)
-    ]
-
-
-def contacts_of(simulation: Simulation) -> Work:
-    """Return work that is counted in contacts, some hundred at a time."""
-    step = scenes.FRAME
-
-    def work() -> float:
-        nonlocal step
-        before = simulation.contact_count
-        simulation.advance_to(simulation.time + step)
-        contacts = simulation.contact_count - before
-        if contacts < 500:
-            step *= 2.0
-        return float(contacts)
-
-    return work
-
-
-def events_of(simulation: Simulation) -> Work:
-    """Return work that is counted in events: contacts and changes of cell."""
-
-    def work() -> float:
-        before = events_so_far(simulation)
-        simulation.advance_to(simulation.time + scenes.FRAME)
-        return float(events_so_far(simulation) - before)
-
-    return work
-
-
-def events_so_far(simulation: Simulation) -> int:
-    """Return how many contacts and changes of cell there have been; nobody else wants to know."""
-    return int(simulation._driver.get('events'))
-
-
-def cost_against_count(pace: Pace) -> list[dict[str, float]]:
-    """Return what a contact and an event cost among ever more disks, and the memory of a disk."""
-    found = []
-    for count in (100, 316, 1_000, 3_162, 10_000, 31_623, 100_000):
-        if count > pace.largest:
-            break
-        scene = scenes.gas(count)
-        gc.collect()
-        before = resident()
-        simulation = Simulation(scene)
-        simulation.advance_to(scenes.FRAME)
-        memory = resident() - before
-        events, contacts = events_so_far(simulation), simulation.contact_count
-        (cost,) = in_turn([contacts_of(simulation)], pace)
-        per_contact = (events_so_far(simulation) - events) / (simulation.contact_count - contacts)
-        cost = sorted(cost)
-        middle = cost[len(cost) // 2]
-        found.append(
-            {
-                'count': count,
-                'contact_ns': 1e9 * middle,
-                'contact_ns_low': 1e9 * cost[0],
-                'contact_ns_high': 1e9 * cost[-1],
-                'event_ns': 1e9 * middle / per_contact,
-                'bytes_per_disk': memory / count,
-            }
-        )
-        print(found[-1], flush=True)
-    return found
-
-
-def resident() -> int:
-    """Return the memory that this process holds, bytes."""
-    pages = int(Path('/proc/self/statm').read_text().split()[1])
-    return pages * os.sysconf('SC_PAGE_SIZE')
 
 
 def ratio_against_speed(pace: Pace) -> list[dict[str, float]]:
@@ -312,39 +158,6 @@ def ratio_against_speed(pace: Pace) -> list[dict[str, float]]:
         middle = pace.rounds // 2
         found.append({'speed': speed, 'pymunk': each[middle], 'batch': batch[middle]})
     return found
-
-
-# ------------------------------------------------------------------ compiling
-
-FIRST_CALL = """
-import json, sys, time
-from circle_bounce_ros.kernel import Circle, Scene, Simulation
-scene = Scene([Circle((3.0 * i, 0.0), (1.0, 0.0), radius=1.0) for i in range(10)])
-began = time.process_time()
-Simulation(scene, compiled=True).advance_to(1.0)
-print(json.dumps(time.process_time() - began))
-"""
-
-
-def compilation(pace: Pace) -> list[Row]:
-    """Return the lines of the first call, with nothing and with everything in the cache."""
-    rounds = min(3, pace.rounds)
-    cold, warm = [], []
-    for _ in range(rounds):
-        with tempfile.TemporaryDirectory() as cache:
-            cold.append(first_call(cache))
-            warm.append(first_call(cache))
-    return [
-        row('first call', 'nothing compiled yet', cold, 's of CPU', 8, 3, more_is_better=False),
-        row('first call', 'compiled before', warm, 's of CPU', 0.6, 0.3, more_is_better=False),
-    ]
-
-
-def first_call(cache: str) -> float:
-    """Return the CPU time of the first call in a new process, import of numba included, s."""
-    environment = {**os.environ, 'XDG_CACHE_HOME': cache}
-    output = subprocess.check_output([sys.executable, '-c', FIRST_CALL], env=environment)
-    return float(json.loads(output))
 
 
 # ------------------------------------------------------------------ accuracy

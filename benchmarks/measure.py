@@ -7,6 +7,8 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from benchmarks.contestants import Contestant
+
 # Does some work and says how much: frames, contacts, whatever is counted.
 Work = Callable[[], float]
 
@@ -69,6 +71,16 @@ def one_turn(work: Work, block: float) -> float:
             return passed / amount
         left = (block - passed) / passed * done if passed > 0.0 else done
         repetitions = max(1, min(done, int(left)))
+
+
+def frames_of(one: Contestant) -> Work:
+    """Return the work of one frame."""
+
+    def work() -> float:
+        one.show_frame()
+        return 1.0
+
+    return work
 
 
 def ratios(theirs: Sequence[float], ours: Sequence[float]) -> list[float]:

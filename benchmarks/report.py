@@ -1,7 +1,7 @@
 """
 Tables and figures from the numbers: `python -m benchmarks.report`.
 
-Writes docs/benchmarks.md, and PNG files beside the numbers in docs/benchmarks.
+Writes docs/benchmarks.md, PNG files beside the numbers in docs/benchmarks, and the short form into the README.
 """
 
 from __future__ import annotations
@@ -18,8 +18,11 @@ mpl.use('Agg')
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from benchmarks import results
+from benchmarks import results, summary
 from benchmarks.rows import verdict
+from benchmarks.wording import measured_on, number, with_spread
+
+README = Path(__file__).resolve().parents[1] / 'README.md'
 
 HEAD = """\
 # Benchmarks
@@ -43,9 +46,14 @@ TABLE = '| scene | against | found | at least | aim | |\n|---|---|---|---|---|--
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--folder', type=Path, default=results.FOLDER)
-    folder = parser.parse_args().folder
+    parser.add_argument('--readme', type=Path, default=README, help='gets the short form')
+    arguments = parser.parse_args()
+    folder = arguments.folder
     path = folder.with_suffix('.md')
     path.write_text(document(folder))
+    engine, node = results.load('engine', folder), results.load('node', folder)
+    if engine is not None and node is not None:
+        summary.put_into(arguments.readme, engine, node)
     print(f'written to {path}')
 
 
@@ -55,7 +63,7 @@ def document(folder: Path) -> str:
     engine = results.load('engine', folder)
     if engine is not None:
         parts += ['## The engine\n\n', measured_on(engine), table(engine['rows'])]
-        parts += [memory(engine), accuracy(engine['accuracy'])]
+        parts.append(accuracy(engine['accuracy']))
         parts += [figures(engine, folder), settings(engine)]
     for name, title in (('node', 'The node'), ('soak', 'Memory of the node')):
         found = results.load(name, folder)
@@ -67,50 +75,20 @@ def document(folder: Path) -> str:
     return ''.join(parts).rstrip() + '\n'
 
 
-def measured_on(found: dict[str, Any]) -> str:
-    """Return when and where."""
-    machine = dict(found['machine'])
-    date, processor, cores = (machine.pop(key) for key in ('date', 'processor', 'cores'))
-    versions = ', '.join(f'{name} {version}' for name, version in machine.items())
-    return f'Measured on {date}, {processor}, {cores} cores; {versions}.\n\n'
-
-
 def table(rows: list[dict[str, Any]]) -> str:
     """Return lines as a table."""
     return TABLE + ''.join(line(found) for found in rows) + '\n'
 
 
 def line(found: dict[str, Any]) -> str:
-    spread = f' ({number(found["low"])} - {number(found["high"])})' if found['rounds'] > 1 else ''
     cells = [
         found['scene'],
         found['against'],
-        f'**{number(found["median"])}**{spread} {found["unit"]}'.strip(),
+        f'{with_spread(found)} {found["unit"]}'.strip(),
         *('' if found[name] is None else number(found[name]) for name in ('least', 'aim')),
         '; '.join(part for part in (verdict(found), found['note']) if part),
     ]
     return f'| {" | ".join(cells)} |\n'
-
-
-def number(value: float) -> str:
-    """Return three digits."""
-    if value == 0.0 or 1e-3 <= abs(value) < 1e6:
-        digits = 2 if value == 0.0 else max(0, 2 - math.floor(math.log10(abs(value))))
-        text = f'{value:,.{digits}f}'
-        return text.rstrip('0').rstrip('.') if '.' in text else text
-    return f'{value:.1e}'
-
-
-def memory(engine: dict[str, Any]) -> str:
-    """Return what grows with the number of disks, in words."""
-    first, last = engine['cost'][0], engine['cost'][-1]
-    grown = last['event_ns'] / first['event_ns']
-    allowed = math.log(last['count']) / math.log(first['count'])
-    return (
-        f'From {first["count"]:,} to {last["count"]:,} disks the cost of an event grows by a factor of {grown:.2f}; '
-        f'log N grows by {allowed:.2f}. At {last["count"]:,} disks a simulation holds '
-        f'{last["bytes_per_disk"]:.0f} bytes a disk (at most 400), the scene that it starts from not counted.\n\n'
-    )
 
 
 def accuracy(found: list[dict[str, Any]]) -> str:
