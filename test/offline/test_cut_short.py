@@ -1,0 +1,164 @@
+"""What is left of a recording that a signal, kill -9 or a full disk ended."""
+
+from __future__ import annotations
+
+import resource
+import signal
+import subprocess
+
+import pytest
+from conftest import files_of, wait_until
+from pyarrow import parquet
+from reading import SECOND, raw_with_mcap, read_with_rosbags, record
+
+from circle_bounce_ros.offline.record import main
+
+LONG = ['gas', '--duration', 100000, '--topics', 'poses', 'time']
+
+
+def size(folder):
+    return sum(path.stat().st_size for path in folder.glob('*.mcap'))
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_after_ctrl_c_or_a_kill_the_bag_is_whole_up_to_where_it_came(tmp_path, bounce, number):
+    folder = tmp_path / 'bag'
+    process = bounce.start('bounce_record', *LONG, '-o', folder)
+    wait_until(lambda: size(folder) > 3e6, 'three megabytes')
+    process.send_signal(number)
+    out, error = process.communicate(timeout=60)
+    assert process.returncode == 128 + number
+    assert 'stopped after' in out
+    assert error == ''
+    assert_is_a_beginning(folder)
+
+
+def assert_is_a_beginning(folder):
+    """Check that a bag holds every message from the first tick on, by both readers."""
+    by_rosbags = sorted((topic, time) for topic, time, _ in read_with_rosbags(folder))
+    messages = raw_with_mcap(folder)
+    assert by_rosbags == sorted((topic, time) for topic, time, _ in messages)
+    ticks = [time for topic, time, _ in messages if topic == '/time']
+    assert len(ticks) > 10
+    assert ticks == [k * SECOND // 60 for k in range(1, len(ticks) + 1)]
+    poses = [time for topic, time, _ in messages if topic == '/poses']
+    assert poses == ticks[: len(poses)]
+    assert len(poses) >= len(ticks) - 1
+
+
+@pytest.mark.parametrize('options', [[], ['--compress']])
+def test_after_kill_9_a_repair_gives_everything_that_was_on_the_disk(tmp_path, bounce, options):
+    folder = tmp_path / 'bag'
+    process = bounce.start('bounce_record', *LONG, '-o', folder, *options)
+    wait_until(lambda: size(folder) > 3e6, 'three megabytes')
+    process.kill()
+    process.communicate(timeout=60)
+    assert not (folder / 'metadata.yaml').exists()
+    on_disk = size(folder)
+    assert 'repaired' in bounce.run('bounce_record', '--repair', folder)
+    assert_is_a_beginning(folder)
+    # At most the last chunk, of a megabyte before it is compressed, was torn.
+    assert size(folder) > on_disk - 1.1e6
+    whole = files_of(folder)
+    error = bounce.run('bounce_record', '--repair', folder, status=1)
+    assert 'there is nothing to repair' in error
+    assert files_of(folder) == whole
+
+
+def test_a_bag_that_is_cut_anywhere_is_repaired_up_to_there(tmp_path):
+    record('gas', '--duration', 1, '--topics', 'poses', 'bodies', '-o', tmp_path / 'gas')
+    data = (tmp_path / 'gas/gas.mcap').read_bytes()
+    whole = raw_with_mcap(tmp_path / 'gas')
+    for cut in (0.4, 0.7, 0.9999, 1.0):
+        folder = tmp_path / f'cut{cut}'
+        folder.mkdir()
+        (folder / 'gas.mcap').write_bytes(data[: int(cut * len(data))])
+        assert main(['--repair', str(folder)]) == 0
+        messages = raw_with_mcap(folder)
+        assert messages == whole[: len(messages)]
+        # Chunks are of one megabyte and one message.
+        assert len(messages) >= len(whole) * (cut - 1.2e6 / len(data))
+        assert len(read_with_rosbags(folder)) == len(messages)
+    assert messages == whole
+
+
+def test_a_bag_without_any_message_is_not_repaired_and_stays(tmp_path, capsys):
+    (tmp_path / 'bag.mcap').write_bytes(b'\x89MCAP0\r\n')
+    assert main(['--repair', str(tmp_path)]) == 1
+    assert 'no message in it can be read' in capsys.readouterr().err
+    assert files_of(tmp_path) == {'bag.mcap': b'\x89MCAP0\r\n'}
+
+
+def limit_files():
+    """Let no file of this process grow beyond 5 MB: as on a full disk, but for the number of the error."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000_000, 5_000_000))
+
+
+def test_a_disk_that_is_full_is_said_and_what_was_written_can_be_repaired(tmp_path, bounce):
+    folder = tmp_path / 'bag'
+    error = bounce.run('bounce_record', *LONG, '-o', folder, status=1, preexec_fn=limit_files)
+    assert f'{folder}: File too large, at ' in error
+    assert f'bounce_record --repair {folder}' in error
+    assert len(error.splitlines()) == 1
+    bounce.run('bounce_record', '--repair', folder)
+    assert_is_a_beginning(folder)
+    assert size(folder) > 3e6
+
+
+def test_a_disk_that_gets_full_is_said_and_a_repair_waits_for_room(tmp_path, bounce):
+    disk = tmp_path / 'disk'
+    disk.mkdir()
+    with Mounted(disk, '8m') as mounted:
+        precious = disk / 'precious'
+        precious.write_text('data')
+        folder = disk / 'out'
+        error = bounce.run('bounce_record', *LONG, '-o', folder, status=1)
+        assert 'No space left on device, at ' in error
+        assert len(error.splitlines()) == 1
+        before = files_of(disk)
+        error = bounce.run('bounce_record', '--repair', folder, status=1)
+        assert 'No space left on device' in error
+        assert files_of(disk) == before
+        mounted.give('32m')
+        bounce.run('bounce_record', '--repair', folder)
+        assert_is_a_beginning(folder)
+        assert precious.read_text() == 'data'
+
+
+def test_on_a_disk_that_gets_full_the_tables_that_are_there_are_whole(tmp_path, bounce):
+    disk = tmp_path / 'disk'
+    disk.mkdir()
+    with Mounted(disk, '48m'):
+        arguments = ['gas', '--duration', 100000, '--format', 'parquet', '--topics', 'bodies']
+        error = bounce.run('bounce_record', *arguments, '-o', disk / 'out', status=1)
+        assert 'No space left on device, at ' in error
+        assert 'the parts that were written are whole' in error
+        assert len(error.splitlines()) == 1
+        rows = parquet.read_table(disk / 'out/bodies', columns=['stamp'])
+        assert len(rows) >= 1_000_000
+
+
+class Mounted:
+    """A file system in memory, for who may mount one."""
+
+    def __init__(self, folder, room):
+        self._folder, self._room = folder, room
+
+    def __enter__(self):
+        command = ['mount', '-t', 'tmpfs', '-o', f'size={self._room}', 'tmpfs', str(self._folder)]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True)
+        except OSError as error:
+            pytest.skip(f'no mount: {error}')
+        if done.returncode:
+            pytest.skip(f'may not mount: {done.stderr.strip()}')
+        return self
+
+    def give(self, room):
+        """Make it larger."""
+        command = ['mount', '-o', f'remount,size={room}', str(self._folder)]
+        subprocess.run(command, check=True)
+
+    def __exit__(self, *_):
+        subprocess.run(['umount', str(self._folder)], check=True)

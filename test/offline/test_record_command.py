@@ -1,0 +1,84 @@
+"""bounce_record: its options, what it refuses, and what it costs."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+
+import pytest
+from conftest import files_of
+from reading import record
+
+from circle_bounce_ros.offline.record import main
+
+
+@pytest.mark.parametrize('options', [[], ['--compress'], ['--format', 'parquet']])
+def test_the_same_command_gives_the_same_bytes(tmp_path, bounce, options):
+    for place in ('a', 'b'):
+        (tmp_path / place).mkdir()
+        folder = tmp_path / place / 'out'
+        bounce.run('bounce_record', 'mixed', '--duration', 2, '-o', folder, *options)
+    assert files_of(tmp_path / 'a') == files_of(tmp_path / 'b')
+
+
+@pytest.mark.parametrize('form', ['bag', 'parquet'])
+def test_an_existing_target_is_refused_and_nothing_is_touched(tmp_path, capsys, form):
+    folder = tmp_path / 'bag'
+    folder.mkdir()
+    (folder / 'precious').write_text('data')
+    assert main(['lesson', '-o', str(folder), '--format', form]) == 1
+    assert f'{folder}: exists already, nothing was touched' in capsys.readouterr().err
+    assert files_of(tmp_path) == {'bag/precious': b'data'}
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'reason'),
+    [
+        (['gaz'], 'scene: must be one of'),
+        (['lesson', '--topics', 'poses', 'moon'], 'got moon'),
+        (['lesson', '--rate', '0'], 'rate: must be > 0'),
+        (['lesson', '--duration', '0.001'], 'duration: must be at least one period'),
+        (['lesson', '--duration', 'nan'], 'duration: must be > 0'),
+        (['lesson', '--frame-id', ''], 'frame-id: must not be empty'),
+        (['lesson', '--format', 'parquet', '--topics', 'poses'], 'must be from bodies, contacts'),
+        (['gas', '--seed', '-1'], 'seed: must be'),
+    ],
+)
+def test_what_is_wrong_is_said_and_leaves_nothing(tmp_path, capsys, arguments, reason):
+    assert main([*arguments, '-o', str(tmp_path / 'bag')]) == 1
+    assert reason in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_recording_takes_the_same_memory_however_long_it_is(tmp_path, bounce):
+    script = (
+        'import resource, sys\n'
+        'from circle_bounce_ros.offline.record import main\n'
+        'assert main(sys.argv[1:]) == 0\n'
+        'print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n'
+    )
+    peaks = []
+    for seconds in (2, 20):
+        arguments = ['gas', '--duration', str(seconds), '--topics', 'poses', 'bodies', '-o']
+        done = subprocess.run(
+            [sys.executable, '-c', script, *arguments, str(tmp_path / f'bag{seconds}')],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        peaks.append(int(done.stdout.split()[-1]))
+    # 91 MB more on the disk; 10 MB is what an allocator may keep.
+    assert peaks[1] < peaks[0] + 10_000
+
+
+def test_the_bar_on_a_terminal_tells_the_time_left(monkeypatch, tmp_path):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr('sys.stderr', terminal)
+    record('gas', '--duration', 5, '--topics', 'poses', '-o', tmp_path / 'bag')
+    assert 'left' in terminal.getvalue()
+    assert '100%' in terminal.getvalue()
