@@ -70,6 +70,7 @@ class RosLink:
         self._declare()
         name = self._node.get_parameter('node').value
         self._contacts: Subscription | None = None
+        self._contacts_wanted = False
         # The time of a tick is published first and taken first.
         self._listen('time', TimeReference, 'time', ALL)
         self._listen('bodies', PointCloud2, 'bodies', FEW)
@@ -133,9 +134,12 @@ class RosLink:
 
     def want_contacts(self, wanted: bool) -> None:
         """Subscribe to `contacts`, or no longer: the node records them for subscribers only."""
-        self._executor.create_task(self._set_contacts, wanted)
+        # The executor takes waiting tasks last first: each of them does what is wanted by then.
+        self._contacts_wanted = wanted
+        self._executor.create_task(self._set_contacts)
 
-    def _set_contacts(self, wanted: bool) -> None:
+    def _set_contacts(self) -> None:
+        wanted = self._contacts_wanted
         if wanted and self._contacts is None:
             self._contacts = self._listen('contacts', PointCloud2, 'contacts', ALL)
         elif not wanted and self._contacts is not None:

@@ -8,6 +8,14 @@ import pytest
 # The observer of the node's tests serves here too.
 sys.path.insert(0, str(Path(__file__).parents[1] / 'ros'))
 
+from browsing import (
+    WIDE,
+    drive,
+    launch,
+    missing_browser,
+    wait_for_circles,
+    wait_for_values,
+)
 from observing import NodeProcess, Observer
 from viewing import VIEWER, Stage, address_of, end_all
 
@@ -59,6 +67,53 @@ def play(stage, observer):
         observer.reset()
 
     return play
+
+
+@pytest.fixture(scope='module')
+def browser():
+    if missing_browser():
+        pytest.skip(missing_browser())
+    with drive() as playwright:
+        browser = launch(playwright)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser):
+    """Return a function that opens an address and returns the page; an error in it fails the test."""
+    contexts, errors = [], []
+
+    def open_page(address, size=WIDE, **options):
+        contexts.append(browser.new_context(viewport=size, **({'color_scheme': 'dark'} | options)))
+        page = contexts[-1].new_page()
+        page.on('pageerror', lambda error: errors.append(str(error)))
+        page.goto(address)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert errors == []
+
+
+@pytest.fixture
+def show(stage, play, open_page):
+    """Return a function that plays a scene and returns a page that shows it."""
+
+    def show(scene='lesson', count=1, paused=False, **options):
+        play(scene, paused)
+        page = open_page(stage.address, **options)
+        wait_for_circles(page, count)
+        wait_for_values(page, scene=Path(scene).stem, paused=str(paused).lower(), time_scale='1.0')
+        return page
+
+    return show
+
+
+@pytest.fixture
+def lesson_page(show):
+    return show()
 
 
 @pytest.fixture

@@ -108,6 +108,40 @@ def test_ten_pages_are_kept_up_to_date_with_10_000_circles(play, stage, many):
     assert min(run(look())) > 5
 
 
+def test_a_node_of_another_name_and_namespace_is_watched_and_asked(domain, tmp_path):
+    node = NodeProcess(tmp_path / 'node', '-r', '__node:=other', '-r', '__ns:=/here')
+    viewer = NodeProcess(
+        tmp_path / 'viewer',
+        '-p',
+        'port:=0',
+        '-p',
+        'node:=other',
+        '-r',
+        '__ns:=/here',
+        program=VIEWER,
+    )
+
+    async def look():
+        async with connected(address_of(viewer)) as page:
+            hello = await page.said(type='hello')
+            assert (hello['node'], hello['topic']) == ('/here/other', '/here/bodies')
+            await page.frame()
+            report = await page.said(type='diagnostics')
+            assert report['values']['scene'] == 'lesson'
+            # Discovery of a service may take longer than that of a topic.
+            while True:
+                await page.say(type='pause', paused=True)
+                if (await page.said(type='answer', to='pause'))['done']:
+                    break
+            while (await page.said(type='diagnostics'))['values']['paused'] != 'true':
+                pass
+
+    try:
+        run(look())
+    finally:
+        end_all([viewer, node])
+
+
 def test_contacts_are_subscribed_to_only_while_a_circle_is_selected(play, stage, observer):
     play()
 
@@ -118,13 +152,33 @@ def test_contacts_are_subscribed_to_only_while_a_circle_is_selected(play, stage,
             await page.say(type='select', circle=0)
             story = await page.said(type='contacts')
             assert story['circle'] == 0
-            assert observer.node.count_subscribers('contacts') == 1
+            # Discovery may tell this subscriber later than the node.
+            observer.spin_until(
+                lambda: observer.node.count_subscribers('contacts') == 1,
+                'a subscription to contacts',
+            )
             await page.say(type='select', circle=-1)
 
     run(look())
     observer.spin_until(
         lambda: observer.node.count_subscribers('contacts') == 0, 'no subscription to contacts'
     )
+
+
+def test_whoever_selects_last_gets_contacts_however_quickly_it_changes(play, stage):
+    play()
+
+    async def look():
+        async with connected(stage.address) as page:
+            for _ in range(5):
+                # Both are read at once, and what they ask for waits side by side.
+                await page.say(type='select', circle=0)
+                await page.say(type='select', circle=-1)
+                await page.say(type='select', circle=0)
+                await page.said(type='contacts')
+                await page.say(type='select', circle=-1)
+
+    run(look())
 
 
 def test_an_answer_says_in_words_what_the_node_has_refused(play, stage):

@@ -30,6 +30,12 @@ export class Camera {
     this.fits = true;
   }
 
+  lookAt(x, y) {
+    this.x = x;
+    this.y = y;
+    this.fits = false;
+  }
+
   pan(right, down) {
     this.x -= right / this.scale;
     this.y += down / this.scale;

@@ -1,12 +1,12 @@
 // Colours that every kind of eye tells apart, on dark and on light.
 
-// Of Okabe and Ito; bluish green first, because the lesson's moving circle is green.
-export const IDENTITY = ['#009e73', '#56b4e9', '#e69f00', '#cc79a7', '#0072b2', '#b8b032', '#8f7ae5', '#a0705a'];
+// Chosen for the largest smallest difference to every kind of eye, the locked circles' colour included; green first,
+// because the lesson's moving circle is green.
+export const IDENTITY = ['#009e73', '#66ccee', '#e69f00', '#cc79a7', '#8f7ae5', '#ddcc77', '#ee99aa', '#5e4fa2'];
 
-// Equal steps of it look equally far apart (cividis, sampled), cut at its dark end so that no circle sinks into the dark.
-const RAMP = ['#2f5fa8', '#4a6b9c', '#66788a', '#7e8584', '#96937c', '#b3a36c', '#d0b555', '#ecc93c', '#ffe945'];
-
-export const SPEED_RAMP = RAMP;
+// Lighter in equal steps, for every kind of eye and in grey (viridis, sampled), cut at its dark end so that no circle
+// sinks into the dark.
+export const SPEED_RAMP = ['#3b528b', '#2f6b8e', '#26828e', '#1f988b', '#28ae80', '#4ec36b', '#84d44b', '#c2df23', '#fde725'];
 
 export const LOOKS = {
   dark: {

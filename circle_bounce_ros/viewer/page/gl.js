@@ -87,15 +87,27 @@ const WALL_VERTEX = `${COMMON}${PLACE}
 layout(location=0) in vec4 ends;
 uniform float pixels;
 uniform float width; // device pixels
+out float aside;     // device pixels from the middle of the wall
 void main() {
   vec2 along = normalize(ends.zw - ends.xy);
   vec2 side = vec2(-along.y, along.x);
   vec2 end = (gl_VertexID & 1) == 0 ? ends.xy - along * width / (2.0 * pixels) : ends.zw + along * width / (2.0 * pixels);
-  float sign = (gl_VertexID >> 1) == 0 ? -1.0 : 1.0;
-  gl_Position = vec4(place(end + side * sign * width / (2.0 * pixels)), 0.0, 1.0);
+  aside = ((gl_VertexID >> 1) == 0 ? -1.0 : 1.0) * (0.5 * width + 1.0);
+  gl_Position = vec4(place(end + side * aside / pixels), 0.0, 1.0);
 }`;
 
-const FLAT_FRAGMENT = `${COMMON}
+// Smooth to both sides, so that a wall at a tilt has no steps.
+const WALL_FRAGMENT = `${COMMON}
+in float aside;
+uniform float width;
+uniform vec3 colour;
+out vec4 result;
+void main() {
+  float alpha = clamp(0.5 * width + 0.5 - abs(aside), 0.0, 1.0);
+  result = vec4(colour * alpha, alpha);
+}`;
+
+const TRAIL_FRAGMENT = `${COMMON}
 uniform vec4 flatColour;
 out vec4 result;
 void main() { result = vec4(flatColour.rgb * flatColour.a, flatColour.a); }`;
@@ -121,8 +133,8 @@ export class Picture {
     const { gl } = this;
     this.points = this.program(POINT_VERTEX, BODY_FRAGMENT('point'));
     this.squares = this.program(SQUARE_VERTEX, BODY_FRAGMENT('square'));
-    this.wallProgram = this.program(WALL_VERTEX, FLAT_FRAGMENT);
-    this.trailProgram = this.program(TRAIL_VERTEX, FLAT_FRAGMENT);
+    this.wallProgram = this.program(WALL_VERTEX, WALL_FRAGMENT);
+    this.trailProgram = this.program(TRAIL_VERTEX, TRAIL_FRAGMENT);
     const [, largest] = gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE);
     this.largestPoint = Math.min(LARGEST_POINT, largest / 2 - 1);
     this.ramp = gl.createTexture();
@@ -275,7 +287,7 @@ export class Picture {
     const { gl } = this;
     const uniforms = this.use(this.wallProgram);
     gl.uniform1f(uniforms.width, WALL_WIDTH * ratio);
-    gl.uniform4f(uniforms.flatColour, ...rgb(look.wall), 1);
+    gl.uniform3f(uniforms.colour, ...rgb(look.wall));
     gl.bindBuffer(gl.ARRAY_BUFFER, this.wallBuffer);
     this.attribute(0, 4, 16, 0, 1);
     this.only(1);

@@ -1,13 +1,13 @@
 // The lesson drawn over the picture: what a teacher would draw on the board.
 
-import { bounceAngles, degrees, showDegrees, length, minus, plus, times, unit } from './lesson.js';
 import { clamp } from './camera.js';
+import { Labels } from './labels.js';
+import { bounceAngles, degrees, showDegrees, length, minus, plus, times, unit } from './lesson.js';
 import { squaresThatOverlap } from './story.js';
 
 const MOST_SQUARES = 400;
 const SEEN = 450; // ms that a contact has the picture to itself
 const COMING = 700; // ms of the wall before the next one that belong to that
-const FONT = '600 13px system-ui, sans-serif';
 
 export class Overlay {
   constructor(canvas) {
@@ -17,7 +17,7 @@ export class Overlay {
     this.corners = null; // what the squares say about the selected circle, or about all
   }
 
-  // view: camera, ratio, look; world, story; trail (s), path of the selected circle; squares (boolean);
+  // view: camera, ratio, look; world, story; trail (s); squares (boolean);
   // untilNext (ms of the wall until the next contact)
   draw(view) {
     const { c, canvas } = this;
@@ -30,10 +30,9 @@ export class Overlay {
     this.corners = null;
     if (!wanted || !world.cloud) return;
     c.setTransform(view.ratio, 0, 0, view.ratio, 0, 0);
-    c.font = FONT;
     c.lineCap = 'round';
     c.lineJoin = 'round';
-    this.labels = [];
+    this.labels = new Labels(c, view.camera, view.look.halo);
     this.view = view;
     if (view.squares) this.drawSquares(view);
     if (!story.now) return;
@@ -94,31 +93,11 @@ export class Overlay {
     c.fill();
   }
 
-  // Writes near a place, inside the picture and not over what is written already.
-  label(text, place, colour) {
-    const { c, view } = this;
-    const wide = c.measureText(text).width;
-    const high = 17;
-    let x = Math.min(view.camera.width - wide - 8, Math.max(8, place[0] - wide / 2));
-    let y = Math.min(view.camera.height - 8, Math.max(20, place[1] + 5));
-    for (let tries = 0; tries < 12; tries += 1) {
-      const hit = this.labels.find((box) => x < box[0] + box[2] + 6 && box[0] < x + wide + 6 && Math.abs(y - box[1]) < high);
-      if (!hit) break;
-      y = hit[1] + (y >= hit[1] ? high + 1 : -high - 1);
-    }
-    this.labels.push([x, y, wide]);
-    c.lineWidth = 4;
-    c.strokeStyle = view.look.halo;
-    c.strokeText(text, x, y);
-    c.fillStyle = colour;
-    c.fillText(text, x, y);
-  }
-
   // How long arrows are: the selected circle's speed is this many pixels.
   get reach() {
     const { camera, story } = this.view;
     const size = Math.min(camera.width, camera.height);
-    return Math.min(Math.max(120, story.now.radius * camera.scale * 2.2), 0.24 * size);
+    return Math.min(Math.max(150, story.now.radius * camera.scale * 2.2), 0.26 * size);
   }
 
   step(velocity) {
@@ -127,7 +106,7 @@ export class Overlay {
     return [velocity[0] * this.reach / speed, -velocity[1] * this.reach / speed];
   }
 
-  drawPath({ path, look, trail }) {
+  drawPath({ story: { path }, look, trail }) {
     if (!trail || path.length < 2) return;
     const { c } = this;
     c.strokeStyle = look.before;
@@ -169,8 +148,8 @@ export class Overlay {
     // Above the line, or to its side where it is steep.
     const side = times([-towards[1], towards[0]], towards[0] > 0 ? -1 : 1);
     const aside = plus(middle, times(side, Math.abs(towards[0]) > 0.5 ? 46 : 74));
-    this.label(`D = ${metres(next.distance)}`, aside, look.text);
-    this.label(`${next.radius ? 'r₁ + r₂' : 'r'} = ${metres(next.sum)}`, plus(aside, [0, 18]), look.after);
+    this.labels.write(`D = ${metres(next.distance)}`, aside, look.text);
+    this.labels.write(`${next.radius ? 'r_1 + r_2' : 'r'} = ${metres(next.sum)}`, plus(aside, [0, 18]), look.after);
     c.globalAlpha = 1;
   }
 
@@ -188,7 +167,7 @@ export class Overlay {
     this.line(minus(touch, times(surface, reach * 1.15)), plus(touch, times(surface, reach * 1.15)), look.dim, 1.5);
     this.line(centre, plus(touch, times(normal, reach * 0.8)), look.halo, 5);
     this.line(minus(centre, times(normal, reach * 0.35)), plus(touch, times(normal, reach * 0.8)), look.normal, 2, [9, 5]);
-    this.label('normal', plus(touch, times(normal, reach * 0.8 + 14)), look.normal);
+    this.labels.write('normal', plus(touch, times(normal, reach * 0.8 + 14)), look.normal);
     this.line(centre, plus(centre, [reach * 1.05, 0]), look.dim, 1, [2, 4]);
 
     const before = this.step(last.before);
@@ -203,17 +182,17 @@ export class Overlay {
     this.arrow(centre, this.step(ap.along), look.along, 1.8);
     this.arrow(tail, before, look.before);
     this.arrow(centre, after, look.after);
-    this.label('v before', minus(tail, times(unit(before), 14)), look.before);
-    this.label('v after', plus(plus(centre, after), times(unit(after), 16)), look.after);
-    this.label('across', plus(plus(centre, this.step(ap.across)), times(normal, -10)), look.across);
+    this.labels.write('v before', minus(tail, times(unit(before), 14)), look.before);
+    this.labels.write('v after', plus(plus(centre, after), times(unit(after), 16)), look.after);
+    this.labels.write('across', plus(plus(centre, this.step(ap.across)), times(normal, -10)), look.across);
     if (length(this.step(ap.along)) > 24) {
-      this.label('along', plus(plus(centre, this.step(ap.along)), times(unit(this.step(ap.along)), 20)), look.along);
+      this.labels.write('along', plus(plus(centre, this.step(ap.along)), times(unit(this.step(ap.along)), 20)), look.along);
     }
 
     const { v, n, pc } = last.angles;
     const turned = last.isLocked ? pc : bounceAngles(last.after, last.normal).v;
-    this.arc(centre, v, reach * 0.44, look.before, 'Aᵥ');
-    this.arc(centre, n, reach * 0.6, look.normal, 'Aₙ');
+    this.arc(centre, v, reach * 0.44, look.before, 'A_v');
+    this.arc(centre, n, reach * 0.6, look.normal, 'A_n');
     this.arc(centre, turned, reach * 0.76, look.after, last.isLocked ? 'A_pc' : 'after');
     c.fillStyle = look.halo;
     c.beginPath();
@@ -243,7 +222,7 @@ export class Overlay {
     // A flat angle is written beside its arc, where no arrow is.
     const place = Math.abs(turn) < 0.3 ? Math.sign(turn || 1) * 0.3 : turn / 2;
     const far = radius + 12 + 34 * Math.abs(Math.cos(place));
-    this.label(`${name} ${showDegrees(radians)}`, plus(centre, [far * Math.cos(place), -far * Math.sin(place)]), colour);
+    this.labels.write(`${name} ${showDegrees(radians)}`, plus(centre, [far * Math.cos(place), -far * Math.sin(place)]), colour);
   }
 
   drawSquares({ world, story, camera, look }) {

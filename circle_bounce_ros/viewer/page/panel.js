@@ -1,15 +1,12 @@
 // The words and numbers beside the picture.
 
+import { find, write } from './dom.js';
 import { KINDS, dot, length, showDegrees } from './lesson.js';
 import { metres } from './overlay.js';
 import { raised } from './plots.js';
 
-export const find = (id) => document.getElementById(id);
-
-export function write(id, text) {
-  const element = find(id);
-  if (element.textContent !== text) element.textContent = text;
-}
+const PAUSE_ICON = 'M3 2h4v12H3zM9 2h4v12H9z';
+const GO_ON_ICON = 'M4 2l10 6-10 6z';
 
 const speed = (value) => `${value.toFixed(3)} m/s`;
 const signed = (value) => `${value < 0 ? '−' : ''}${Math.abs(value).toFixed(2)}`;
@@ -22,14 +19,14 @@ export function showTime(seconds) {
   return `${h ? `${h}:` : ''}${pad(m)}:${pad(s)}.${String(Math.floor((seconds - whole) * 1000)).padStart(3, '0')}`;
 }
 
-export function showDiagnostics({ values, message, warns }) {
+// What the node reports on /diagnostics.
+export function showReport({ values, message, warns }, paused) {
   const factor = Number(values['real-time factor']);
   write('n-factor', Number.isFinite(factor) ? `${factor.toFixed(2)} ×` : 'measuring');
   write('n-contacts', Math.round(Number(values['contacts/s'])).toLocaleString('en'));
   write('n-energy', power(Number(values['energy error'])));
-  const paused = values.paused === 'true';
-  write('state', paused ? 'paused' : 'running');
-  find('state').dataset.state = paused ? 'paused' : 'running';
+  find('pause').querySelector('span').textContent = paused ? 'Go on' : 'Pause';
+  find('pause-icon').setAttribute('d', paused ? GO_ON_ICON : PAUSE_ICON);
   write('warning', warns ? `The node warns: ${message}` : '');
   find('warning').hidden = !warns;
 }
@@ -65,7 +62,7 @@ export function showContact(last) {
   if (!last) {
     for (const id of dashes) write(id, '–');
     write('contact-when', '');
-    write('contact-note', '');
+    for (const id of ['note-locked', 'note-free']) find(id).hidden = true;
     return;
   }
   const { angles, before, after, before_parts: bp, after_parts: ap, normal } = last;
@@ -79,9 +76,8 @@ export function showContact(last) {
   const side = [-normal[1], normal[0]];
   write('p-across', `${signed(dot(bp.across, normal))} → ${signed(dot(ap.across, normal))} m/s`);
   write('p-along', `${signed(dot(bp.along, side))} → ${signed(dot(ap.along, side))} m/s`);
-  write('contact-note', last.isLocked
-    ? `A_pc = A_v − 2 A_d + 180°. The part across the surface changes sign, the part along it and the speed stay.`
-    : 'Two free circles: the part along the surface stays, the part across is exchanged with the other, so the speed may change and A_pc does not apply.');
+  find('note-locked').hidden = !last.isLocked;
+  find('note-free').hidden = last.isLocked;
 }
 
 export function showSquares(corners) {
@@ -96,4 +92,11 @@ export function showSquares(corners) {
     ? `Squares overlap, circles do not touch: D = ${metres(first.distance)} > ${metres(first.sum)}${corners.pairs.length > 1 ? ` (and ${corners.pairs.length - 1} more)` : ''}.`
     : 'No squares overlap unless their circles touch.');
   say.classList.toggle('lit', Boolean(first));
+}
+
+// For those who do not see the picture.
+export function describeScene(canvas, { count, locked, walls, scene }, { circle, now }, { values, paused }) {
+  const own = now ? ` Circle ${circle} is selected, at ${now.x.toFixed(2)}, ${now.y.toFixed(2)} m.` : '';
+  canvas.setAttribute('aria-label', `Scene ${values.scene ?? scene}: ${count} moving and ${locked.length} locked circles, `
+    + `${walls.length} walls, ${paused ? 'paused' : 'running'}.${own} Arrow keys move the view, plus and minus zoom.`);
 }

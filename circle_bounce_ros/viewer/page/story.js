@@ -12,12 +12,10 @@ export class Story {
 
   select(circle) {
     this.circle = circle;
-    this.mass = null;
     this.next = null;
-    this.last = null;
     this.age = Infinity;
     this.count = 0;
-    this.waiting = [];
+    this.restart();
   }
 
   hear(message) {
@@ -30,8 +28,17 @@ export class Story {
 
   // The scene starts again, or is another one.
   restart() {
+    this.mass = null; // kg: what the last contacts said
     this.last = null;
     this.waiting = [];
+    this.path = []; // where the circle has been: {x, y, time}
+  }
+
+  // Keeps `trail` seconds of the scene.
+  remember(seconds, trail) {
+    if (!this.now || seconds === null) return;
+    this.path.push({ x: this.now.x, y: this.now.y, time: seconds });
+    while (this.path.length && seconds - this.path[0].time > trail) this.path.shift();
   }
 
   // Returns the contacts that the picture has just come to.
@@ -50,6 +57,11 @@ export class Story {
     }
     this.next = this.now && comesTo(world, this.now);
     return come;
+  }
+
+  // Milliseconds of the wall until the next contact, at so many seconds of the scene per second.
+  untilNext(rate) {
+    return this.next && rate ? (1000 * this.next.time) / rate : Infinity;
   }
 
   // From 1, just now, to 0.

@@ -1,0 +1,33 @@
+// The node as the page knows it: what it says about itself, and what it is asked to do.
+
+import { announce } from './notices.js';
+
+export class RemoteNode {
+  // send(message): returns whether it could be sent.
+  constructor(send) {
+    this.send = send;
+    this.values = {}; // of /diagnostics, as they were said
+    this.topic = '';
+    this.publishers = null; // of that topic; null: not known
+  }
+
+  // null: it has not said so yet.
+  get paused() {
+    return 'paused' in this.values ? this.values.paused === 'true' : null;
+  }
+
+  // Returns whether it shows another scene than before.
+  report(values) {
+    const isOther = values.scene !== this.values.scene || values.seed !== this.values.seed;
+    this.values = values;
+    return isOther;
+  }
+
+  ask(message) {
+    if (!this.send(message)) announce('no connection to the viewer', true);
+  }
+
+  pause() { this.ask({ type: 'pause', paused: !this.paused }); }
+  step() { this.ask({ type: 'step' }); }
+  reset() { this.ask({ type: 'reset' }); }
+}
