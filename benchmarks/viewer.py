@@ -1,10 +1,14 @@
 """
-Measure the live page with software rendering: `python benchmarks/viewer.py [SECONDS]`.
+Measure the live page with software rendering: `python -m benchmarks.viewer [--seconds S] [--rounds N]`.
 
 Frames drawn per second, the time from a message's stamp to its drawing, and what the viewer needs of a core, for
-scenes of 1,000, 10,000 and 100,000 circles; then ten clients without a browser; then a page that stalls.
+scenes of 1,000, 10,000 and 100,000 circles; then ten clients without a browser; then a page that stalls. Writes
+docs/benchmarks/viewer.json and the table in docs/viewer.md.
 """
 
+from __future__ import annotations
+
+import argparse
 import asyncio
 import os
 import statistics
@@ -12,16 +16,39 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
+# The tests know how to start it all and how to look at it.
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/ros'))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/viewer'))
 
-from viewing import Stage, connected, drive, launch, missing_browser
+from browsing import WIDE, drive, launch, missing_browser, wait_until
+from viewing import Stage, connected
 
+from benchmarks import machine, results
+from benchmarks.wording import measured_on, number
 from circle_bounce_ros.viewer.cloud import stamp_of
 
+DOCUMENT = results.FOLDER.parent / 'viewer.md'
+BEGIN = '<!-- made by `make bench-viewer` -->\n'
+END = '<!-- end of what `make bench-viewer` makes -->\n'
+
+COUNTS = (1000, 10000, 100000)
 CLIENTS = 10
+STALL = 300  # ms
+WARM_UP = 3.0  # s: what is compiled and opened at first is not measured
 TICKS = os.sysconf('SC_CLK_TCK')
+
+# What is wanted, by key of a line: (at least or at most, limit).
+WANTED = {
+    '1000 rate': ('at least', 40.0),
+    '10000 rate': ('at least', 15.0),
+    '10000 lag': ('at most', 150.0),
+    '10000 viewer': ('at most', 15.0),
+    'clients rate': ('at least', 55.0),
+    'clients viewer': ('at most', 30.0),
+    'stall lag': ('at most', 600.0),
+}
 
 SCENE = """
 moving_circles_collide: false
@@ -36,8 +63,8 @@ MEASURE = """
   const lags = [];
   const began = performance.now();
   bounce.afterDraw = (app) => {
-    const [s, ns] = app.world.cloud.stamp.split('.');
-    lags.push(Date.now() - (Number(s) * 1000 + Number(ns) / 1e6));
+    const [s, ns] = app.world.cloud.stamp.split('.').map(Number);
+    lags.push(Date.now() - (s * 1000 + ns / 1e6));
     if (performance.now() - began > seconds * 1000) {
       bounce.afterDraw = null;
       resolve([lags.length / ((performance.now() - began) / 1000), lags]);
@@ -45,105 +72,194 @@ MEASURE = """
   };
 })
 """
+SLOW_DOWN = """
+(stall) => {
+  const draw = bounce.picture.draw.bind(bounce.picture);
+  bounce.picture.draw = (view) => {
+    draw(view);
+    const until = performance.now() + stall;
+    while (performance.now() < until) { /* busy */ }
+  };
+}
+"""
 
 
-def cpu_of(pid):
-    fields = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()
-    return (int(fields[11]) + int(fields[12])) / TICKS
+class Share:
+    """What a process takes of a core, %, from when this is made."""
+
+    def __init__(self, pid: int) -> None:
+        self._pid = pid
+        self._began, self._then = time.monotonic(), self._cpu()
+
+    def _cpu(self) -> float:
+        fields = Path(f'/proc/{self._pid}/stat').read_text().rpartition(')')[2].split()
+        return (int(fields[11]) + int(fields[12])) / TICKS
+
+    def value(self) -> float:
+        return 100 * (self._cpu() - self._then) / (time.monotonic() - self._began)
 
 
-def p95(values):
+def p95(values: list[float]) -> float:
     return statistics.quantiles(values, n=20)[-1] if len(values) > 1 else values[0]
 
 
-def show(stage, folder, count):
-    path = folder / f'{count}.yaml'
-    path.write_text(SCENE.format(count=count, radius=0.6 / count**0.5))
-    stage.start_node('-p', f'scene:={path}')
-    return path
-
-
-def measure_page(stage, browser, seconds, count):
-    page = browser.new_context(viewport={'width': 1280, 'height': 800}).new_page()
+def measure_page(stage: Stage, browser: Any, seconds: float, count: int) -> dict[str, float]:
+    """Return rate (Hz), lag (ms, p95), viewer (% of a core); at 10,000 circles the stalled page's lags too."""
+    page = browser.new_context(viewport=WIDE).new_page()
     page.goto(stage.address)
-    while page.evaluate('bounce.world.count') != count or page.evaluate('bounce.received') < 30:
-        page.wait_for_timeout(100)
-    page.evaluate('bounce.setTrail(0)')
-    page.wait_for_timeout(3000)
-    cpu, began = cpu_of(stage.viewer.process.pid), time.monotonic()
+    wait_until(page, f'bounce.world.count === {count} && bounce.received >= 30')
+    page.evaluate('bounce.looks.setTrail(0)')
+    page.wait_for_timeout(1000 * WARM_UP)
+    share = Share(stage.viewer.process.pid)
     rate, lags = page.evaluate(MEASURE, seconds)
-    share = (cpu_of(stage.viewer.process.pid) - cpu) / (time.monotonic() - began)
-    print(
-        f'{count:7,} circles: {rate:5.1f} frames/s, stamp to draw p95 {p95(lags):4.0f} ms, '
-        f'viewer {share:4.0%} of a core',
-        flush=True,
-    )
+    found = {'rate': rate, 'lag': p95(lags), 'viewer': share.value()}
     if count == 10000:
-        stall(page, seconds)
+        page.evaluate(SLOW_DOWN, STALL)
+        page.wait_for_timeout(1000 * WARM_UP)
+        _, lags = page.evaluate(MEASURE, 2 * seconds)
+        half = len(lags) // 2
+        found |= {
+            'stalled, first half': max(lags[:half]),
+            'stalled, second half': max(lags[half:]),
+        }
     page.context.close()
+    return found
 
 
-def stall(page, seconds):
-    """Let every frame take 300 ms: the lag must stay small."""
-    page.evaluate(
-        """() => { const draw = bounce.picture.draw.bind(bounce.picture);
-        bounce.picture.draw = (view) => { draw(view); const t = performance.now() + 300;
-          while (performance.now() < t) { /* busy */ } }; }"""
-    )
-    page.wait_for_timeout(2000)
-    _, lags = page.evaluate(MEASURE, 2 * seconds)
-    half = len(lags) // 2
-    print(
-        f'        a page that stalls 300 ms a frame lags {max(lags[:half]):.0f} ms at most in the first half '
-        f'and {max(lags[half:]):.0f} ms in the second',
-        flush=True,
-    )
+async def measure_clients(stage: Stage, seconds: float) -> dict[str, float]:
+    """Return rate (Hz, of the slowest client), lag (ms, p95), viewer (% of a core)."""
 
-
-async def measure_clients(stage, seconds):
-    async def look():
+    async def look() -> tuple[float, list[float]]:
         async with connected(stage.address) as page:
-            _, number, *_ = await page.frame()
-            await page.say(type='ack', frame=number)
+            _, frame, *_ = await page.frame()
+            await page.say(type='ack', frame=frame)
             began, lags = time.monotonic(), []
             while time.monotonic() < began + seconds:
-                _, number, _, bodies = await page.frame()
+                _, frame, _, bodies = await page.frame()
                 lags.append((time.time_ns() - stamp_of(bodies)) / 1e6)
-                await page.say(type='ack', frame=number)
+                await page.say(type='ack', frame=frame)
             return len(lags) / (time.monotonic() - began), lags
 
-    cpu, began = cpu_of(stage.viewer.process.pid), time.monotonic()
-    results = await asyncio.gather(*(look() for _ in range(CLIENTS)))
-    share = (cpu_of(stage.viewer.process.pid) - cpu) / (time.monotonic() - began)
-    lags = [lag for _, lags in results for lag in lags]
-    print(
-        f'{CLIENTS} clients at 10,000 circles: {min(rate for rate, _ in results):.1f} frames/s or more each, '
-        f'stamp to arrival p95 {p95(lags):.0f} ms, viewer {share:.0%} of a core',
-        flush=True,
-    )
+    share = Share(stage.viewer.process.pid)
+    found = await asyncio.gather(*(look() for _ in range(CLIENTS)))
+    lags = [lag for _, some in found for lag in some]
+    return {'rate': min(rate for rate, _ in found), 'lag': p95(lags), 'viewer': share.value()}
 
 
-def main():
-    seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 5.0
-    if missing_browser():
-        sys.exit(missing_browser())
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    print(f'load before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores', flush=True)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for count in (1000, 10000, 100000):
+def one_round(seconds: float) -> dict[str, dict[str, float]]:
+    """Return what was measured, by the count of circles and for `clients`."""
+    found: dict[str, dict[str, float]] = {}
+    for count in COUNTS:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            path = folder / 'scene.yaml'
+            path.write_text(SCENE.format(count=count, radius=0.6 / count**0.5))
             stage = Stage(folder)
-            show(stage, folder, count)
+            stage.start_node('-p', f'scene:={path}')
             stage.start_viewer()
             try:
                 with drive() as playwright:
                     browser = launch(playwright)
-                    measure_page(stage, browser, seconds, count)
+                    found[str(count)] = measure_page(stage, browser, seconds, count)
                     browser.close()
                 if count == 10000:
-                    asyncio.run(measure_clients(stage, seconds))
+                    found['clients'] = asyncio.run(measure_clients(stage, seconds))
             finally:
                 stage.end()
+        print(
+            count, {key: round(value, 1) for key, value in found[str(count)].items()}, flush=True
+        )
+    print('clients', {key: round(value, 1) for key, value in found['clients'].items()}, flush=True)
+    return found
+
+
+def medians(rounds: list[dict[str, dict[str, float]]]) -> dict[str, float]:
+    """Return the median over the rounds, by `<part> <quantity>`."""
+    keys = [(part, key) for part, found in rounds[0].items() for key in found]
+    found = {
+        f'{part} {key}': statistics.median(one[part][key] for one in rounds) for part, key in keys
+    }
+    found['stall lag'] = max(
+        found.pop(f'10000 stalled, {half} half') for half in ('first', 'second')
+    )
+    return found
+
+
+def table(found: dict[str, Any]) -> str:
+    """Return the numbers in words."""
+    medians, spread = found['medians'], found['spread']
+
+    def cell(key: str, unit: str) -> str:
+        text = f'**{number(medians[key])}**{unit}'
+        if key in spread:
+            text += f' ({number(spread[key][0])} - {number(spread[key][1])})'
+        if key in WANTED:
+            word, limit = WANTED[key]
+            is_met = medians[key] >= limit if word == 'at least' else medians[key] <= limit
+            text += f'; {word} {limit:g} wanted' + ('' if is_met else ': **missed**')
+        return text
+
+    lines = [
+        f'| {name} | {cell(f"{part} rate", "")} | {cell(f"{part} lag", " ms")} | {cell(f"{part} viewer", " %")} |\n'
+        for part, name in [
+            *((str(count), f'{count:,} circles, a browser') for count in COUNTS),
+            ('clients', f'{CLIENTS} clients at 10,000 circles, each'),
+        ]
+    ]
+    return (
+        measured_on(found)
+        + '| | frames per second | stamp to draw, p95 | viewer, of a core |\n|---|---|---|---|\n'
+        + ''.join(lines)
+        + f'\nA page that stalls {STALL} ms a frame at 10,000 circles lags {cell("stall lag", " ms")} at most.\n'
+        f'Medians of {found["rounds"]} rounds of {found["seconds"]:g} s, in brackets the least and the most; '
+        'clients get frames instead of drawing them.\n'
+    )
+
+
+def put_into(document: Path, found: dict[str, Any]) -> None:
+    """
+    Write the table between its two marks.
+
+    Raises
+    ------
+    ValueError
+        For a document without the marks.
+
+    """
+    before, begin, rest = document.read_text().partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f'{document}: must have the lines {BEGIN!r} and {END!r}')
+    document.write_text(before + begin + table(found) + end + after)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--seconds', type=float, default=10.0, help='of each measurement')
+    parser.add_argument('--rounds', type=int, default=3)
+    parser.add_argument('--folder', type=Path, default=results.FOLDER)
+    parser.add_argument('--document', type=Path, default=DOCUMENT)
+    arguments = parser.parse_args()
+    if missing_browser():
+        sys.exit(missing_browser())
+    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    print(f'load before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores', flush=True)
+    described = machine.describe()
+    rounds = [one_round(arguments.seconds) for _ in range(arguments.rounds)]
+    every = [medians([one]) for one in rounds]
+    found = {
+        'machine': described,
+        'rounds': arguments.rounds,
+        'seconds': arguments.seconds,
+        'medians': medians(rounds),
+        'spread': {
+            key: [min(one[key] for one in every), max(one[key] for one in every)]
+            for key in every[0]
+            if len(every) > 1
+        },
+    }
+    print(f'written to {results.save("viewer", found, arguments.folder)}')
+    put_into(arguments.document, found)
 
 
 if __name__ == '__main__':

@@ -8,60 +8,56 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/ros'))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test/viewer'))
 
-from viewing import Stage, drive, launch
+from browsing import (
+    PHONE,
+    WIDE,
+    drive,
+    launch,
+    press,
+    restart_paused,
+    step,
+    wait_for_values,
+    wait_until,
+)
+from viewing import Stage
 
 PICTURES = Path(__file__).resolve().parents[1] / 'docs' / 'pictures'
-DESK = {'width': 1280, 'height': 800}
-PHONE = {'width': 390, 'height': 844}
 
-LET_IT_RUN = 'new Promise((resolve) => setTimeout(resolve, {}))'
-# Just after a contact with a locked circle, and stopped there.
-STOP_AT_CONTACT = """
-new Promise((resolve) => {
-  bounce.selectNext(1);
-  const look = setInterval(() => {
-    if (bounce.story.freshness < 0.93 || bounce.story.last.kind !== 1) return;
-    clearInterval(look);
-    bounce.ask({ type: 'pause', paused: true });
-    setTimeout(resolve, 4500);
-  }, 5);
-})
-"""
 
-# Squares overlap by then, circles do not touch yet.
-STEP_TO_THE_RED_ONE = """
-new Promise((resolve) => {
-  bounce.ask({ type: 'pause', paused: true });
-  bounce.ask({ type: 'reset' });
-  const look = setInterval(() => {
-    const { next } = bounce.story;
-    if (!bounce.paused || !next || bounce.world.seconds > 1) return;
-    if (next.kind !== 'locked' || next.time > 0.06) {
-      bounce.ask({ type: 'step' });
-      return;
-    }
-    clearInterval(look);
-    setTimeout(resolve, 4500);
-  }, 150);
-})
-"""
+def at_a_contact(page):
+    """Stop just after a contact with a locked circle."""
+    restart_paused(page)
+    press(page, 'k')
+    while not page.evaluate('bounce.story.last !== null && bounce.story.last.kind === 1'):
+        step(page)
+    for _ in range(3):
+        step(page)
+
+
+def before_a_contact(page):
+    """Stop where squares overlap already and circles do not touch yet."""
+    restart_paused(page)
+    press(page, 'k')
+    press(page, 'b')
+    while page.evaluate('bounce.story.next.kind !== "locked" || bounce.story.next.time > 0.06'):
+        step(page)
+
+
+def after(seconds):
+    def act(page):
+        wait_until(page, f'bounce.world.seconds > {seconds}')
+
+    return act
+
 
 SHOTS = [
-    ('viewer-dark', 'lesson', DESK, 'dark', [STOP_AT_CONTACT]),
-    (
-        'viewer-approach',
-        'lesson',
-        DESK,
-        'light',
-        [
-            "bounce.selectNext(1); document.getElementById('squares').click()",
-            STEP_TO_THE_RED_ONE,
-        ],
-    ),
-    ('viewer-gas', 'gas', DESK, 'light', [LET_IT_RUN.format(6000)]),
-    ('viewer-pegboard', 'pegboard', DESK, 'dark', [LET_IT_RUN.format(6000)]),
-    ('viewer-phone', 'mixed', PHONE, 'dark', [LET_IT_RUN.format(5000)]),
+    ('viewer-dark', 'lesson', WIDE, 'dark', at_a_contact),
+    ('viewer-approach', 'lesson', WIDE, 'light', before_a_contact),
+    ('viewer-gas', 'gas', WIDE, 'light', after(6)),
+    ('viewer-pegboard', 'pegboard', WIDE, 'dark', after(6)),
+    ('viewer-phone', 'mixed', PHONE, 'dark', after(5)),
 ]
+ANSWERED = "!document.getElementById('answer').classList.contains('shown')"
 
 
 def main() -> None:
@@ -70,17 +66,17 @@ def main() -> None:
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     with tempfile.TemporaryDirectory() as folder, drive() as playwright:
         browser = launch(playwright)
-        for name, scene, size, scheme, acts in SHOTS:
+        for name, scene, size, scheme, act in SHOTS:
             stage = Stage(Path(folder))
             stage.start_node('-p', f'scene:={scene}')
             stage.start_viewer()
             try:
                 page = browser.new_page(viewport=size, color_scheme=scheme)
                 page.goto(stage.address)
-                while page.evaluate('bounce.drawTimes.length < 5 || !bounce.values.scene'):
-                    page.wait_for_timeout(100)
-                for act in acts:
-                    page.evaluate(act)
+                wait_until(page, 'bounce.drawTimes.length > 5')
+                wait_for_values(page, scene=scene)
+                act(page)
+                wait_until(page, ANSWERED)
                 page.screenshot(path=into / f'{name}.png')
                 page.close()
             finally:
