@@ -31,7 +31,8 @@ def _run(command: str, module: str) -> int:
         if error.name is None or error.name.partition('.')[0] == PACKAGE:
             raise
         print(
-            f"{command}: needs {error.name}, which is not installed: pip install '{PACKAGE}[offline]'",
+            f"{command}: needs {error.name}, which is not installed; "
+            f"in a clone of {PACKAGE}: pip install '.[offline]'",
             file=sys.stderr,
         )
         return 1

@@ -52,7 +52,7 @@ def test_a_library_that_is_missing_is_named_with_how_to_get_it(command, library)
     done = run_without({library}, code, '--help')
     assert done.returncode == 1
     assert done.stderr.startswith(f'bounce_{command}: needs {library}, which is not installed')
-    assert "pip install 'circle_bounce_ros[offline]'" in done.stderr
+    assert "in a clone of circle_bounce_ros: pip install '.[offline]'" in done.stderr
     assert len(done.stderr.splitlines()) == 1
 
 
