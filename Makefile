@@ -17,7 +17,7 @@ ANY_PYTHON := $(shell for p in python3 python3.13 python3.12 python3.11 python3.
 SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(PYTHON)'
 
 .PHONY: help set-up run listen reset pause resume step set check clean distclean
-.PHONY: bench bench-long bench-soak
+.PHONY: bench bench-viewer bench-long bench-soak
 .PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest test-viewer
 
 help:
@@ -28,6 +28,7 @@ help:
 	@echo 'make test       everything that CI runs'
 	@echo 'make check      ruff, mypy and import contracts only'
 	@echo 'make bench      the engine and the node beside others: docs/benchmarks, 20 minutes'
+	@echo 'make bench-viewer the live page in a browser: docs/viewer.md, 5 minutes'
 	@echo 'make bench-long a run of 10^9 contacts, 10 minutes;   make bench-soak   memory, 10 minutes'
 	@echo 'make set-up     only make the environments that run and test need'
 	@echo 'make clean      remove what tests and builds leave'
@@ -77,6 +78,7 @@ check: .venv
 test: set-up check
 	+$(MAKE) --no-print-directory -j 2 --output-sync test-kernel test-bare-kernel test-compiled-kernel test-offline
 	+$(MAKE) --no-print-directory test-rest
+	+$(MAKE) --no-print-directory test-viewer
 	@echo 'make test: PASSED'
 
 # Branch coverage of the plain engine, measured by the kernel's own tests. Mutants run in the bare environment.
@@ -100,15 +102,18 @@ test-offline: .venvs/offline
 test-rest: .venv .venvs/kernel .venvs/colcon .venvs/bench
 	$(BIN)/python -m pytest --durations=15 --ignore=test/kernel --ignore=test/offline --ignore=test/viewer
 
-# The live page in a real browser. Not yet part of `make test`: it depends on how busy the machine is.
+# The live page in a real browser; where there is none the tests skip and say so.
 test-viewer: .venv
-	$(BIN)/python -m pytest test/viewer
+	$(BIN)/python -m pytest --durations=10 test/viewer
 
 # The node first: nothing else is at work then.
 bench: .venv .venvs/bench
 	$(BIN)/python -m benchmarks.node
 	.venvs/bench/bin/python -m benchmarks.engine
 	.venvs/bench/bin/python -m benchmarks.report
+
+bench-viewer: .venv
+	$(BIN)/python -m benchmarks.viewer
 
 bench-long: .venvs/bench
 	.venvs/bench/bin/python -m benchmarks.long_run
