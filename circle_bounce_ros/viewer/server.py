@@ -79,6 +79,9 @@ class Server:
         self._clients: set[Client] = set()
         self._diagnostics: dict[str, Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
+        self._unreadable: set[str] = (
+            set()
+        )  # channels on which something came that nobody understands
         self._files = {
             f'/{path.name}': (path.read_bytes(), TYPES[path.suffix])
             for path in sorted(PAGE.iterdir())
@@ -148,7 +151,13 @@ class Server:
             for client in self._clients:
                 client.wake()
         if channel in ('bodies', 'contacts'):
-            self._tell_story(channel, message)
+            try:
+                self._tell_story(channel, message)
+            except ValueError as error:
+                # Somebody else's message: once is enough, it comes sixty times a second.
+                if channel not in self._unreadable:
+                    self._link.log(f'{channel}: cannot be read: {error}')
+                self._unreadable.add(channel)
 
     def _tell_story(self, channel: str, message: bytes) -> None:
         circles = {client.circle for client in self._clients} - {-1}

@@ -16,6 +16,7 @@ from circle_bounce_ros.viewer.cloud import Cloud, read_cloud, stamp_of
 KEPT = 16
 
 PLACE = ('x', 'y', 'vx', 'vy')
+BODY = (*PLACE, 'id')
 CONTACT = ('time', 'x', 'y', 'nx', 'ny', 'impulse', 'a', 'b', 'kind')
 
 
@@ -36,8 +37,16 @@ class Witness:
         self._bodies.append(bodies)
 
     def hear(self, contacts: bytes) -> None:
-        """Take note of a serialized `contacts` message; there is one each tick, often without any."""
-        self._contacts.append(read_cloud(contacts))
+        """
+        Take note of a serialized `contacts` message; there is one each tick, often without any.
+
+        Raises
+        ------
+        ValueError
+            For a message that is no cloud, or one without the fields of a contact.
+
+        """
+        self._contacts.append(_cloud_with(CONTACT, contacts))
 
     def take(self, circles: set[int]) -> dict[int, list[str]]:
         """
@@ -53,6 +62,11 @@ class Witness:
         dict
             For each id its messages, oldest first.
 
+        Raises
+        ------
+        ValueError
+            For a `bodies` message that is no cloud, or one without the fields of a circle.
+
         """
         said: dict[int, list[str]] = {}
         while len(self._bodies) > 1 and self._contacts:
@@ -64,12 +78,20 @@ class Witness:
             between = [cloud.points for cloud in self._contacts if then < cloud.stamp_ns <= now]
             if not any(map(len, between)):
                 continue
-            before, after = read_cloud(first), read_cloud(self._bodies[0])
+            before, after = (_cloud_with(BODY, message) for message in (first, self._bodies[0]))
             for circle in circles:
                 story = _story(circle, before, after, np.concatenate(between))
                 if story:
                     said.setdefault(circle, []).append(json.dumps(story))
         return said
+
+
+def _cloud_with(fields: tuple[str, ...], message: bytes) -> Cloud:
+    cloud = read_cloud(message)
+    missing = set(fields) - set(cloud.points.dtype.names or ())
+    if missing:
+        raise ValueError(f'cloud: must have the fields {", ".join(sorted(missing))}')
+    return cloud
 
 
 def _story(

@@ -47,6 +47,16 @@ def test_a_cloud_that_is_cut_short_is_refused(cut):
         read_cloud(bodies(1, 1.0)[:cut])
 
 
+def test_a_cloud_without_the_fields_of_a_contact_is_refused_by_name(witness):
+    with pytest.raises(ValueError, match='must have the fields a, b, impulse, kind, nx, ny, time'):
+        witness.hear(bodies(10, 1.0))
+    witness.see(contacts(10))
+    witness.see(contacts(20))
+    witness.hear(contacts(20, (3, 5, ContactKind.CIRCLE)))
+    with pytest.raises(ValueError, match='must have the fields id, vx, vy'):
+        witness.take({3})
+
+
 def test_the_velocities_are_those_of_the_ticks_before_and_at_the_contact(witness):
     for stamp, speed in ((10, 1.0), (20, 2.0), (30, 3.0)):
         witness.see(bodies(stamp, speed))
