@@ -31,7 +31,7 @@ def _run(command: str, module: str) -> int:
         if error.name is None or error.name.partition('.')[0] == PACKAGE:
             raise
         print(
-            f"{command}: needs {error.name}, which is not installed; "
+            f'{command}: needs {error.name}, which is not installed; '
             f"in a clone of {PACKAGE}: pip install '.[offline]'",
             file=sys.stderr,
         )

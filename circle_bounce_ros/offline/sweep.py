@@ -29,6 +29,7 @@ LOCK = '.lock'
 AHEAD = 4
 # A run is given up after so many workers have died of it.
 DEATHS = 10
+GONE = 'the cluster has gone, what it has done is kept: start it again'
 # How often to look whether to stop.
 PATIENCE = 0.5  # s
 # How long a scheduler may take to answer.
@@ -156,6 +157,8 @@ def connect(chosen: argparse.Namespace, runs: int) -> Iterator[Any]:
     }
     with dask.config.set(settings):
         if chosen.scheduler:
+            # What happens there is said in one sentence here.
+            logging.getLogger('distributed.client').setLevel(logging.CRITICAL)
             try:
                 client = Client(chosen.scheduler, timeout=CONNECTING)
             except (OSError, ValueError) as error:
@@ -203,6 +206,8 @@ def carry_out(
                 done = wait(waiting, PATIENCE, 'FIRST_COMPLETED').done
             except TimeoutError:
                 done = set()
+            except CancelledError:
+                raise SweepError(GONE) from None
             for future in done:
                 yield row_of(plan, future)
                 bar.update()
@@ -226,10 +231,10 @@ def row_of(plan: Plan, future: Any) -> dict[str, Any]:
     run = plan.run(int(future.key.rsplit('-', 1)[1]))
     try:
         row: dict[str, Any] = future.result()
-    except (CancelledError, OSError) as error:
-        raise SweepError(f'the cluster has gone: {error}; start it again') from None
-    except KilledWorker:
-        problem = f'{DEATHS} workers died while they had it'
+    except (CancelledError, OSError):
+        raise SweepError(GONE) from None
+    except KilledWorker as error:
+        problem = f'{error.allowed_failures + 1} workers died while they had it'
         return {'run': run.number, 'seed': run.seed, **run.parameters, 'error': problem}
     return row
 

@@ -70,7 +70,8 @@ class Cluster:
         self._folder = folder
         self._file = folder / 'scheduler.json'
         options = ['--port', '0', '--no-dashboard', '--scheduler-file', self._file]
-        self.processes = [self._start('scheduler', *options)]
+        self.scheduler = self._start('scheduler', *options)
+        self.processes = [self.scheduler]
         wait_until(self._file.exists, 'a scheduler')
         self.address = json.loads(self._file.read_text())['address']
         self.workers = []

@@ -235,6 +235,25 @@ def test_a_worker_killed_in_the_middle_costs_nothing_but_time(
     assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
 
 
+def test_a_scheduler_that_dies_is_said_and_what_is_done_is_kept(
+    tmp_path, bounce, write_sweep, cluster
+):
+    sweep = write_sweep(seeds={'first': 0, 'count': 100}, duration=10.0)
+    cluster.add_worker()
+    folder = tmp_path / 'out'
+    process = bounce.start('bounce_sweep', sweep, '-o', folder, '--scheduler', cluster.address)
+    log = folder / 'rows.jsonl'
+    wait_until(lambda: log.exists() and log.read_text().count('\n') >= 2, 'two runs')
+    cluster.scheduler.kill()
+    _, error = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert error == (
+        'bounce_sweep: the cluster has gone, what it has done is kept: start it again\n'
+    )
+    done = [row['run'] for row in rows_of(folder)]
+    assert 2 <= len(done) < 300
+
+
 def test_a_scheduler_that_is_not_there_is_said(tmp_path, capsys, write_sweep, monkeypatch):
     monkeypatch.setattr('circle_bounce_ros.offline.sweep.CONNECTING', '0.5s')
     arguments = [
