@@ -16,7 +16,7 @@ from circle_bounce_ros.kernel import (
     Wall,
     kinetic_energy,
 )
-from circle_bounce_ros.kernel.engine import tournament
+from circle_bounce_ros.kernel.engine import cells, tournament
 from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide
 from circle_bounce_ros.kernel.engine.grid import gather
 from circle_bounce_ros.kernel.engine.records import EVERYWHERE
@@ -191,20 +191,28 @@ def test_circles_that_left_an_open_scene_still_meet():
     assert simulation.velocities.tolist() == [[2.0, 0.0], [1.0, 0.0]]
 
 
-def test_a_circle_comes_back_from_far_outside():
+@pytest.mark.parametrize(('levels', 'radius'), [(1, 0.5), (2, 0.12)])
+def test_a_circle_comes_back_from_far_outside(levels, radius, monkeypatch):
     """
     A light circle bounces off a locked one, catches up with a heavy one far out, and comes home.
 
-    On the way back it is in no cell of the grid: the locked circle must find it all the same.
+    On the way back it is in no cell of the grid: the locked circle must find it all the same. A large circle at rest
+    makes it a guest of a second level of cells, which it leaves and enters as well.
     """
     speed = 2.01
-    light = Circle((20.0, 0.0), (-speed, 0.0), radius=0.5)
-    heavy = Circle((21.5, 0.0), (1.0, 0.0), radius=0.5, mass=1e12)
-    simulation, world = plain(Scene([light, heavy, locked(0.0, 0.0)]), record_contacts=True)
-    first = 19.0 / speed
-    meeting = (21.5 - 1.0 - 1.0 + speed * first) / (speed - 1.0)
-    place = 21.5 + meeting - 1.0
-    home = meeting + (place - 1.0) / (speed - 2.0)
+    light = Circle((20.0, 0.0), (-speed, 0.0), radius=radius)
+    heavy = Circle((21.5, 0.0), (1.0, 0.0), radius=radius, mass=1e12)
+    large = [Circle((0.0, 10.0), radius=1.0)] * (levels - 1)
+    monkeypatch.setattr(cells, 'CROWDED', 0.01)
+    monkeypatch.setattr(cells, 'CELLS_PER_GAP', 0.01)
+    scene = Scene([light, heavy, *large, locked(0.0, 0.0)])
+    simulation, world = plain(scene, record_contacts=True)
+    assert world.levels == levels
+    near = 0.5 + radius
+    first = (20.0 - near) / speed
+    meeting = (21.5 - 2.0 * radius - near + speed * first) / (speed - 1.0)
+    place = 21.5 + meeting - 2.0 * radius
+    home = meeting + (place - near) / (speed - 2.0)
     simulation.advance_to(meeting + 1.0)
     assert is_away(world, 0)
     simulation.advance_to(home + 1.0)

@@ -221,13 +221,19 @@ def test_plain_and_compiled_code_give_the_same_bits(kind):
     assert plain.tobytes() == contacts_of(scene, duration(kind), compiled=True).tobytes()
 
 
+@pytest.mark.parametrize('compiled', [False, True])
 @pytest.mark.parametrize('kind', KINDS)
-def test_looking_ahead_changes_no_bit(kind, monkeypatch):
-    pytest.importorskip('numba', reason='numba is not installed: plain code never looks ahead')
+def test_looking_ahead_changes_no_bit(kind, compiled, monkeypatch):
+    if compiled:
+        pytest.importorskip(
+            'numba', reason='numba is not installed: there is only the plain engine'
+        )
     scene = random_scene(kind, 2)
-    straight = contacts_of(scene, duration(kind), compiled=True)
+    straight = contacts_of(scene, duration(kind), compiled=compiled)
     monkeypatch.setattr(build, 'VERY_MANY', 0)
-    ahead = Simulation(scene, record_contacts=True, compiled=True)
+    ahead = Simulation(scene, record_contacts=True, compiled=compiled)
+    if not compiled:
+        ahead._driver.world.looks_ahead = True  # plain code never does: it would only take time
     assert ahead._driver.world.looks_ahead
     ahead.advance_to(duration(kind))
     assert len(straight) > 20
