@@ -76,6 +76,8 @@ def main() -> None:
                 wait_until(page, 'bounce.drawTimes.length > 5')
                 wait_for_values(page, scene=scene)
                 act(page)
+                page.mouse.move(0, 0)
+                page.evaluate('document.activeElement.blur()')
                 wait_until(page, ANSWERED)
                 page.screenshot(path=into / f'{name}.png')
                 page.close()

@@ -36,8 +36,8 @@ STALL = """
 """
 
 
-def test_a_page_that_stalls_misses_frames_and_does_not_lag_more_and_more(lesson_page):
-    page = lesson_page
+def test_a_page_that_stalls_misses_frames_and_does_not_lag_more_and_more(show, many):
+    page = show(many, 10000)
     first = page.evaluate('bounce.received')
     page.evaluate(STALL)
     lags = wait_until(page, 'window.lags.length >= 20 && window.lags')

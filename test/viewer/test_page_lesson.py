@@ -256,18 +256,35 @@ def test_before_the_contact_the_distance_is_drawn_with_a_ghost_where_they_will_t
     )
 
 
+# Whether each turn to slow motion came before a contact, rather than in the time after one.
+WATCH_TURNS = """
+() => {
+  const { pace } = bounce;
+  const turn = pace.turn.bind(pace);
+  const touched = pace.touched.bind(pace);
+  window.before = [];
+  window.speeds = []; // that the node had reported, at each contact
+  pace.touched = (now) => {
+    window.speeds.push(bounce.node.values.time_scale);
+    touched(now);
+  };
+  pace.turn = (isSlow) => {
+    if (isSlow) window.before.push(performance.now() > pace.slowUntil && bounce.story.next.time / pace.chosen < 0.3);
+    turn(isSlow);
+  };
+}
+"""
+
+
 def test_slow_motion_begins_before_a_contact_and_ends_after_it(lesson_page):
     page = lesson_page
+    page.evaluate(WATCH_TURNS)
     press(page, 'm')
     wait_for_values(page, time_scale='0.12')
     assert text_of(page, 'speed-value') == 'slow 1 ×'
-    count = page.evaluate('bounce.story.count')
-    slow = wait_until(
-        page,
-        f'bounce.story.count > {count} && bounce.node.values.time_scale',
-        'a contact in slow motion',
-    )
-    assert slow == '0.12'
+    wait_until(page, "window.speeds.includes('0.12')", 'a contact in slow motion')
+    # On a busy machine the page may come too late for one contact, not for every one.
+    wait_until(page, 'window.before.includes(true)', 'slow motion before a contact')
     press(page, 'm')
     wait_for_values(page, time_scale='1.0')
     wait_until(page, "document.getElementById('speed-value').innerText === '1 ×'")

@@ -299,7 +299,7 @@ export class Picture {
     const uniforms = this.use(this.trailProgram);
     this.only(4);
     for (let i = 0; i + 1 < past.length; i += 1) {
-      gl.uniform4f(uniforms.flatColour, ...rgb(look.before), 0.06 + 0.4 * ((i + 1) / past.length) ** 2);
+      gl.uniform4f(uniforms.flatColour, ...rgb(look.before), 0.08 + 0.6 * ((i + 1) / past.length) ** 1.5);
       [past[i], past[i + 1]].forEach(({ buffer, cloud }, which) => {
         gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
         this.attribute(2 * which, 1, cloud.step, cloud.fields.x.offset, 1);

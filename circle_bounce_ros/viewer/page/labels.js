@@ -45,12 +45,15 @@ export class Labels {
     return { words, font, low: isLow ? LOW_BY : 0, wide: this.c.measureText(words).width };
   }
 
+  // The next free line in one direction: away from the first one that is in the way.
   free(x, wanted, wide) {
     let y = wanted;
+    let away = 0;
     for (let tries = 0; tries < MOST_TRIES; tries += 1) {
       const hit = this.boxes.find(([left, base, width]) => x < left + width + 6 && left < x + wide + 6 && Math.abs(y - base) < HIGH);
       if (!hit) break;
-      y = hit[1] + (y >= hit[1] ? HIGH + 1 : -HIGH - 1);
+      away ||= y >= hit[1] ? HIGH + 1 : -HIGH - 1;
+      y = hit[1] + away;
     }
     return y;
   }
