@@ -1,17 +1,14 @@
-"""A recording as a rosbag2 of MCAP, and how to make one whole that was cut short."""
+"""A recording as a rosbag2 of MCAP."""
 
 from __future__ import annotations
 
-import shutil
-import struct
-from collections.abc import Callable, Collection, Iterator
+import fcntl
+import os
+from collections.abc import Collection
 from contextlib import suppress
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal
 
-from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, DataEnd, Message, Schema
-from mcap.stream_reader import StreamReader
 from rosbags.interfaces import (
     Connection,
     Qos,
@@ -22,7 +19,6 @@ from rosbags.interfaces import (
     QosTime,
 )
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
-from rosbags.rosbag2.metadata import parse_qos
 from rosbags.typesys import Stores, get_typestore
 
 from circle_bounce_ros.encoding.topics import (
@@ -38,15 +34,9 @@ from circle_bounce_ros.offline.recording import write_scene
 
 VERSION: Literal[9] = 9  # of rosbag2's metadata, that of ROS 2 Jazzy
 METADATA = 'metadata.yaml'
-REPAIRING = '.repairing'
-QOS_KEY = 'offered_qos_profiles'
 
 # What ROS 2 calls a time without end: no deadline, no end of life.
 FOR_EVER = QosTime(sec=9223372036, nsec=854775807)
-
-
-class RepairError(ValueError):
-    """Why a recording cannot be repaired, in one sentence."""
 
 
 def topics_of(scene: Scene) -> list[Topic]:
@@ -108,7 +98,8 @@ class Bag:
         def wanted(topic: Topic) -> bool:
             return topics is None or topic.name in topics
 
-        self._writer = _open(folder, compress)
+        self._writer = open_writer(folder, compress)
+        self._lock = lock(folder)
         write_scene(scene, folder)
         self._types = get_typestore(Stores.ROS2_JAZZY)
         self._each_tick = [
@@ -144,13 +135,16 @@ class Bag:
     def close(self) -> None:
         """Write index and metadata."""
         self._writer.close()
+        os.close(self._lock)
 
     def abort(self) -> None:
         """Let go of the file; what is on the disk stays, for `repair`."""
-        _let_go(self._writer)
+        let_go(self._writer)
+        os.close(self._lock)
 
 
-def _open(folder: Path, compress: bool) -> Writer:
+def open_writer(folder: Path, compress: bool) -> Writer:
+    """Return the writer of a new bag, which may compress its chunks with zstd."""
     writer = Writer(folder, version=VERSION, storage_plugin=StoragePlugin.MCAP)
     if compress:
         writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
@@ -158,122 +152,30 @@ def _open(folder: Path, compress: bool) -> Writer:
     return writer
 
 
-def _let_go(writer: Writer) -> None:
+def let_go(writer: Writer) -> None:
+    """Close the file of a bag as it stands."""
     # What is left in a buffer may have no room: that is the error already being reported.
     with suppress(OSError):
         writer.abort()
 
 
-class Repaired(NamedTuple):
+def lock(folder: Path) -> int:
     """
-    What a repair saved.
-
-    Attributes
-    ----------
-    messages : int
-    end : float, s
-        Stamp of the last one.
-
-    """
-
-    messages: int
-    end: float
-
-
-def needs_repair(folder: Path) -> bool:
-    """Return whether a recording was cut short: its metadata is what is written last."""
-    return not (folder / METADATA).exists()
-
-
-def repair(folder: Path, report: Callable[[int], None] = lambda _: None) -> Repaired:
-    """
-    Make a bag whole that was cut short, as by kill -9 or a full disk.
-
-    All that can be read goes into a new file, which takes the place of the old one when it is complete.
-
-    Parameters
-    ----------
-    folder : Path
-    report : callable
-        Told after each message how many bytes of the old file have been read.
+    Make a folder this process's own until what is returned is closed, or the process ends in whatever way.
 
     Raises
     ------
-    RepairError
-        When there is nothing to repair.
-    OSError
-        When there is no room, which leaves the bag as it was.
+    BlockingIOError
+        When it is somebody else's.
 
     """
-    files = sorted(folder.glob('*.mcap'))
-    if len(files) != 1:
-        raise RepairError(f'{folder}: must hold one .mcap file, got {len(files)}')
-    if not needs_repair(folder):
-        raise RepairError(f'{folder}: has its {METADATA}, there is nothing to repair')
-    new = folder / REPAIRING / files[0].stem
-    shutil.rmtree(new.parent, ignore_errors=True)
+    descriptor = os.open(folder, os.O_RDONLY)
     try:
-        repaired = _copy(files[0], new, report)
-        (new / files[0].name).replace(files[0])
-        (new / METADATA).replace(folder / METADATA)
-    finally:
-        shutil.rmtree(new.parent, ignore_errors=True)
-    return repaired
-
-
-def _copy(old: Path, new: Path, report: Callable[[int], None]) -> Repaired:
-    writer = _open(new, compress=_is_compressed(old))
-    connections: dict[int, Connection] = {}
-    count, last = 0, 0
-    types = get_typestore(Stores.ROS2_JAZZY)
-    try:
-        for schema, channel, message, place in _readable(old):
-            if channel.id not in connections:
-                connections[channel.id] = writer.add_connection(
-                    channel.topic,
-                    schema.name,
-                    typestore=types,
-                    offered_qos_profiles=parse_qos(channel.metadata.get(QOS_KEY, '')),
-                )
-            writer.write(connections[channel.id], message.log_time, message.data)
-            count, last = count + 1, message.log_time
-            report(place)
-        if not count:
-            raise RepairError(f'{old}: no message in it can be read')
-        writer.close()
-    except BaseException:
-        _let_go(writer)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
         raise
-    return Repaired(count, last / 1e9)
-
-
-def _is_compressed(path: Path) -> bool:
-    with path.open('rb') as file:
-        for record in _records(StreamReader(file, emit_chunks=True)):
-            if isinstance(record, Chunk):
-                return bool(record.compression)
-    return False
-
-
-def _readable(path: Path) -> Iterator[tuple[Schema, Channel, Message, int]]:
-    """Return all messages up to where the file is cut."""
-    schemas: dict[int, Schema] = {}
-    channels: dict[int, Channel] = {}
-    with path.open('rb') as file:
-        for record in _records(StreamReader(file)):
-            if isinstance(record, Schema):
-                schemas[record.id] = record
-            elif isinstance(record, Channel):
-                channels[record.id] = record
-            elif isinstance(record, Message):
-                channel = channels[record.channel_id]
-                yield schemas[channel.schema_id], channel, record, file.tell()
-
-
-def _records(reader: StreamReader) -> Iterator[object]:
-    # Up to where it was cut, however the library says so: a record that is too short, or one of nothing.
-    with suppress(McapError, EOFError, struct.error, ValueError):
-        for record in reader.records:
-            if isinstance(record, DataEnd):
-                return  # what follows is index
-            yield record
+    except OSError:
+        # Some network file systems know no locks: then nobody is kept out.
+        pass
+    return descriptor

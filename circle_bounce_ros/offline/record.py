@@ -13,9 +13,10 @@ from tqdm import tqdm
 from circle_bounce_ros.encoding.stamps import SECOND
 from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError, Simulation
-from circle_bounce_ros.offline.bag import Bag, RepairError, repair, topics_of
+from circle_bounce_ros.offline.bag import Bag, topics_of
 from circle_bounce_ros.offline.parquet import TABLES, ParquetFolder
 from circle_bounce_ros.offline.recording import Sink, moments
+from circle_bounce_ros.offline.repair import RepairError, repair
 from circle_bounce_ros.offline.stopping import Stopping
 from circle_bounce_ros.offline.ticks import Ticks
 from circle_bounce_ros.scene_file import load_scene

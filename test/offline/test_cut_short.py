@@ -65,6 +65,17 @@ def test_after_kill_9_a_repair_gives_everything_that_was_on_the_disk(tmp_path, b
     assert files_of(folder) == whole
 
 
+def test_what_is_still_being_recorded_is_not_repaired(tmp_path, bounce):
+    folder = tmp_path / 'bag'
+    process = bounce.start('bounce_record', *LONG, '-o', folder)
+    wait_until(lambda: size(folder) > 3e6, 'three megabytes')
+    error = bounce.run('bounce_record', '--repair', folder, status=1)
+    assert f'{folder}: is still being recorded, nothing was touched' in error
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert_is_a_beginning(folder)
+
+
 def test_a_bag_that_is_cut_anywhere_is_repaired_up_to_there(tmp_path):
     record('gas', '--duration', 1, '--topics', 'poses', 'bodies', '-o', tmp_path / 'gas')
     data = (tmp_path / 'gas/gas.mcap').read_bytes()
