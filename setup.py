@@ -54,7 +54,7 @@ setup(
             'types-jsonschema',
         ],
         'docs': ['matplotlib>=3.8'],
-        # Recordings, pictures and data sets: all that offline/ needs, on any system.
+        # Recordings, pictures and data sets: all that offline/ needs, where there is no ROS too.
         'offline': [
             'rosbags>=0.11.9',
             'mcap>=1.2',

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import time
+
 import pytest
 
 pytest.importorskip('rosbags', reason='recordings need the extra `offline`')
@@ -10,11 +13,18 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray, PoseStamped, TwistStamped
 from mcap.reader import make_reader
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import PointCloud2, TimeReference
 from visualization_msgs.msg import MarkerArray
 
+from circle_bounce_ros.kernel import Simulation
+from circle_bounce_ros.offline import plot
+from circle_bounce_ros.offline.bag_source import of_bag
 from circle_bounce_ros.offline.record import main
+from circle_bounce_ros.scene_file import load_scene
 
 TYPES = {
     '/clock': Clock,
@@ -125,3 +135,54 @@ def test_a_recording_offers_what_the_node_offers(start, observer, lesson, tmp_pa
         qos = publisher.qos_profile
         assert qos.reliability.name == recorded.reliability.name, topic
         assert qos.durability.name == recorded.durability.name, topic
+
+
+def test_what_a_recorder_hears_of_the_node_can_be_drawn(start, observer, lesson, tmp_path):
+    """As `ros2 bag record` does it: the bytes of each message, at the time when they came."""
+    kinds = {'/bodies': PointCloud2, '/contacts': PointCloud2, '/time': TimeReference}
+    kinds['/markers/static'] = MarkerArray
+    heard = []
+
+    def recorder_of(topic):
+        return lambda data: heard.append((topic, time.time_ns(), data))
+
+    for topic, kind in kinds.items():
+        durability = (
+            DurabilityPolicy.TRANSIENT_LOCAL if topic in LATCHED else DurabilityPolicy.VOLATILE
+        )
+        qos = QoSProfile(depth=1000, durability=durability)
+        observer.node.create_subscription(kind, topic, recorder_of(topic), qos, raw=True)
+    # By the clock on the wall, but ten times as fast as it.
+    start(scene=lesson, time_scale=10.0, rate=50.0)
+    observer.spin_until(lambda: len([t for t, _, _ in heard if t == '/bodies']) > 60, 'bodies')
+    folder = tmp_path / 'heard'
+    types = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connections = {
+            topic: writer.add_connection(
+                topic, f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}', typestore=types
+            )
+            for topic, kind in kinds.items()
+        }
+        for topic, came, data in heard:
+            writer.write(connections[topic], came, data)
+    references = [deserialize_message(d, TimeReference) for t, _, d in heard if t == '/time']
+    source = of_bag(folder, math.inf, 1000.0)
+    scene = load_scene(lesson)
+    assert source.scene.walls == scene.walls
+    frames = list(source.frames())
+    first = deserialize_message(
+        next(d for t, _, d in heard if t == '/bodies'), PointCloud2
+    ).header.stamp
+    (began,) = [
+        r.time_ref.sec + r.time_ref.nanosec * 1e-9 for r in references if r.header.stamp == first
+    ]
+    assert frames[-1].time > 5.0  # more than half a second on the wall
+    simulation = Simulation(scene)
+    for frame in frames:
+        simulation.advance_to(began + frame.time)
+        # float32 in the message, metres.
+        assert frame.positions == pytest.approx(simulation.positions, abs=1e-6)
+    assert sum(len(frame.contacts) for frame in frames) > 3
+    assert plot.main(['energy', str(folder), '-o', str(tmp_path / 'energy.png')]) == 0
+    assert plot.main(['free_path', str(folder), '-o', str(tmp_path / 'path.png')]) == 0
