@@ -57,7 +57,7 @@ SHOTS = [
     ('viewer-pegboard', 'pegboard', WIDE, 'dark', after(6)),
     ('viewer-phone', 'mixed', PHONE, 'dark', after(5)),
 ]
-ANSWERED = "!document.getElementById('answer').classList.contains('shown')"
+ANSWERED = "getComputedStyle(document.getElementById('answer')).opacity === '0'"
 
 
 def main() -> None:
