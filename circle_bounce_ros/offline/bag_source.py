@@ -103,21 +103,34 @@ def of_bag(folder: Path, duration: float, rate: float, namespace: str | None = N
             f'{folder}: has no {METADATA}; if its recording was cut short: '
             f'bounce_record --repair {folder}'
         )
-    bag = Bag(folder, _namespace_in(folder, namespace))
-    scene, collide, known = _scene_of(bag)
+    types = _types_in(folder)
+    bag = Bag(folder, _namespace_in(folder, types, namespace))
+    scene, collide, masses_known = _scene_of(bag)
 
     def frames() -> Iterator[Frame]:
         return thinned(_frames(bag, duration), rate)
 
-    return Source(folder.name, scene, frames, float(np.finfo(np.float32).eps), collide, known)
+    return Source(
+        folder.name,
+        scene,
+        frames,
+        digits=float(np.finfo(np.float32).eps),
+        collide=collide,
+        masses_known=masses_known,
+        contacts_known=bag.namespace + CONTACTS.name in types,
+    )
 
 
-def _namespace_in(folder: Path, wanted: str | None) -> str:
+def _types_in(folder: Path) -> dict[str, str]:
+    """Return the types of all topics of which there are messages."""
     try:
         with Reader(folder) as reader:
-            types = {c.topic: c.msgtype for c in reader.connections if c.msgcount}
+            return {c.topic: c.msgtype for c in reader.connections if c.msgcount}
     except Exception as error:
         raise SourceError(f'{folder}: cannot be read: {type(error).__name__}: {error}') from None
+
+
+def _namespace_in(folder: Path, types: dict[str, str], wanted: str | None) -> str:
     found = sorted(
         name.removesuffix(BODIES.name)
         for name, kind in types.items()

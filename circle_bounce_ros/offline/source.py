@@ -61,6 +61,8 @@ class Source:
     collide : bool
         Whether moving circles hit each other.
     masses_known : bool
+    contacts_known : bool
+        Without them, those of a frame are always none.
 
     """
 
@@ -70,6 +72,7 @@ class Source:
     digits: float
     collide: bool
     masses_known: bool = True
+    contacts_known: bool = True
 
     @property
     def moving(self) -> list[Circle]:

@@ -121,13 +121,22 @@ def test_without_the_topic_time_the_stamps_count(tmp_path, gas_bag):
     assert_is_the_gas(frames)
 
 
+def test_contacts_that_were_not_recorded_are_not_counted_as_none(tmp_path, capsys, gas_bag):
+    folder = rewrite(gas_bag, tmp_path / 'bodies', topics=('bodies',))
+    for picture in ('energy', 'trajectories'):
+        path = tmp_path / f'{picture}.png'
+        assert plot.main([picture, str(folder), '-o', str(path)]) == 0
+        assert 'contacts' not in numbers_of_picture(path)
+    assert plot.main(['free_path', str(folder), '-o', str(tmp_path / 'path.png')]) == 1
+    assert 'must have contacts, got none, as their topic is not in it' in capsys.readouterr().err
+
+
 def test_a_bag_may_begin_in_the_middle(tmp_path, gas_bag):
     folder = rewrite(gas_bag, tmp_path / 'later', begin=SECOND)
     frames = frames_of(folder)
     assert frames[0].time == 0.0
     assert_is_the_gas(frames, first=RATE)
-    numbers = plot.main(['free_path', str(folder), '-o', str(tmp_path / 'a.png')])
-    assert numbers == 0
+    assert plot.main(['free_path', str(folder), '-o', str(tmp_path / 'a.png')]) == 0
 
 
 def clock_of_a_pause(ns):

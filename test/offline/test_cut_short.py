@@ -69,9 +69,12 @@ def test_what_is_still_being_recorded_is_not_repaired(tmp_path, bounce):
     folder = tmp_path / 'bag'
     process = bounce.start('bounce_record', *LONG, '-o', folder)
     wait_until(lambda: size(folder) > 3e6, 'three megabytes')
+    # Alive, but not to fill the disk meanwhile.
+    process.send_signal(signal.SIGSTOP)
     error = bounce.run('bounce_record', '--repair', folder, status=1)
     assert f'{folder}: is still being recorded, nothing was touched' in error
     process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGCONT)
     process.communicate(timeout=60)
     assert_is_a_beginning(folder)
 

@@ -38,5 +38,7 @@ def energy(source: Source) -> Picture:
         0.99, 0.03, f'grey: one rounding of one number, {source.digits:.1e}', ha='right',
         color=HELP, transform=axes.transAxes, fontsize=10.0,
     )  # fmt: skip
-    title(axes, f'{source.name}: change of the kinetic energy, {contacts:,} contacts')
-    return figure, {'largest': largest, 'contacts': contacts, 'duration': times[-1]}
+    known = {'contacts': contacts} if source.contacts_known else {}
+    counted = f', {contacts:,} contacts' if known else ''
+    title(axes, f'{source.name}: change of the kinetic energy{counted}')
+    return figure, {'largest': largest, **known, 'duration': times[-1]}

@@ -101,7 +101,8 @@ def count(source: Source, window: Window | None) -> Counts:
         ways.append(float(np.hypot(*frame.velocities.T)[held].sum()))
         ends.append(ends_of(contacts['kind']))
     if len(times) < 2 or not sum(ends[1:]):
-        raise SourceError(f'{source.name}: must have contacts, got none (is the topic recorded?)')
+        why = '' if source.contacts_known else ', as their topic is not in it'
+        raise SourceError(f'{source.name}: must have contacts, got none{why}')
     time, step = np.array(times), np.diff(times)
     # The contacts of the first frame are from before it.
     parts = np.array_split(np.arange(1, len(time)), min(TIME_BINS, len(step)))

@@ -58,4 +58,5 @@ def trajectories(source: Source) -> Picture:
     show_plane(axes, view)
     which = f'{len(chosen)} of {count} circles' if len(chosen) < count else 'every moving circle'
     title(axes, f'{source.name}: paths of {which}, {end:.4g} s (dots: where they begin)')
-    return figure, {'circles': count, 'paths': len(chosen), 'duration': end, 'contacts': contacts}
+    numbers = {'circles': count, 'paths': len(chosen), 'duration': end}
+    return figure, numbers | ({'contacts': contacts} if source.contacts_known else {})
