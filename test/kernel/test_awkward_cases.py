@@ -204,7 +204,7 @@ def test_a_circle_comes_back_from_far_outside(levels, radius, monkeypatch):
     heavy = Circle((21.5, 0.0), (1.0, 0.0), radius=radius, mass=1e12)
     large = [Circle((0.0, 10.0), radius=1.0)] * (levels - 1)
     monkeypatch.setattr(cells, 'CROWDED', 0.01)
-    monkeypatch.setattr(cells, 'CELLS_PER_GAP', 0.01)
+    monkeypatch.setattr(cells, 'GAPS_A_CELL_OF_LEVELS', 0.01)
     scene = Scene([light, heavy, *large, locked(0.0, 0.0)])
     simulation, world = plain(scene, record_contacts=True)
     assert world.levels == levels

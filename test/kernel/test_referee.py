@@ -164,7 +164,7 @@ def test_levels_of_cells_change_no_bit(kind, monkeypatch):
     scene = random_scene(kind, 6)
     ordinary = contacts_of(scene, duration(kind))
     monkeypatch.setattr(cells, 'CROWDED', 0.01)
-    monkeypatch.setattr(cells, 'CELLS_PER_GAP', 0.1)
+    monkeypatch.setattr(cells, 'GAPS_A_CELL_OF_LEVELS', 0.1)
     many = Simulation(scene, record_contacts=True, compiled=False)
     if kind in ('mixed', 'sizes'):
         assert many._driver.world.levels >= 2
@@ -202,7 +202,7 @@ def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
     scene = Scene(circles, [Wall((-11.0, -11.0), (-11.0, 11.0))])
     ordinary = contacts_of(scene, 3.0, compiled=compiled)
     monkeypatch.setattr(build, 'LOG_BLOCK', 7)
-    monkeypatch.setattr(cells, 'CELLS_PER_GAP', 2.0)
+    monkeypatch.setattr(cells, 'GAPS_A_CELL', 2.0)
     simulation = Simulation(scene, record_contacts=True, compiled=compiled)
     before = len(simulation._driver.world.lists)
     simulation.advance_to(3.0)

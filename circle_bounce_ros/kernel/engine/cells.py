@@ -28,8 +28,10 @@ Array = NDArray[Any]
 
 # Every number below is a choice that costs time or memory when it is wrong, never a digit.
 
-# In a thin scene cells grow to this fraction of the mean gap between circles: fewer borders to cross.
-CELLS_PER_GAP = 0.7
+# In a thin scene cells grow to so much of the mean gap between circles: fewer borders to cross, more circles in reach.
+# Of several levels the finer ones stay narrower, for larger circles look through them too.
+GAPS_A_CELL = 1.0
+GAPS_A_CELL_OF_LEVELS = 0.7
 
 # A level is split off for smaller circles where nine of its cells would hold more than this many.
 CROWDED = 32
@@ -125,12 +127,12 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
     """
     area = width * height
 
-    def least(fitting: Array) -> float:
+    def least(fitting: Array, gaps: float) -> float:
         widest = 2.0 * float(fitting.max()) * (1.0 + CELL_MARGIN)
         gap = math.sqrt(area / len(fitting)) - widest
-        return max(widest, CELLS_PER_GAP * gap, max(width, height) / MOST_CELLS_A_SIDE)
+        return max(widest, gaps * gap, max(width, height) / MOST_CELLS_A_SIDE)
 
-    widths = [least(radii)]
+    widths = [least(radii, GAPS_A_CELL)]
     while collide and 9.0 * widths[-1] ** 2 * len(radii) > CROWDED * area:
         needed = COARSE * float(radii.max()) * (1.0 + CELL_MARGIN) ** 2
         needed = max(needed, max(width, height) / MOST_CELLS_A_SIDE)
@@ -140,10 +142,13 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
         elif coarse / 2.0 >= needed:
             coarse /= 2.0
         radii = radii[radii * (1.0 + CELL_MARGIN) <= GUEST * coarse]
-        if len(radii) == 0 or least(radii) > coarse / 2.0:
+        if len(radii) == 0:
             break
+        narrowest = least(radii, GAPS_A_CELL_OF_LEVELS)
         finer = coarse / 2.0
-        while finer / 2.0 >= least(radii):
+        if narrowest > finer:
+            break
+        while finer / 2.0 >= narrowest:
             finer /= 2.0
         widths[-1] = coarse
         widths.append(finer)
