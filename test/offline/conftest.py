@@ -20,9 +20,12 @@ PATIENCE = 60.0  # s; only a fault takes that long
 class Commands:
     """The commands, each in a process of its own."""
 
+    def __init__(self):
+        self._started = []
+
     def start(self, command, *arguments, **options):
         module = f'circle_bounce_ros.offline.{command.removeprefix("bounce_")}'
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [sys.executable, '-W', 'error', '-m', module, *map(str, arguments)],
             cwd=ROOT,
             stdout=subprocess.PIPE,
@@ -30,6 +33,8 @@ class Commands:
             text=True,
             **options,
         )
+        self._started.append(process)
+        return process
 
     def run(self, command, *arguments, status=0, **options):
         """Return what it wrote, to stdout if it is to succeed and to stderr otherwise."""
@@ -39,10 +44,20 @@ class Commands:
         assert 'Traceback' not in error
         return error if status else out
 
+    def end(self):
+        """End what a test that failed has left: a recording would go on until the disk is full."""
+        for process in self._started:
+            process.kill()
+            process.communicate(timeout=PATIENCE)
 
-@pytest.fixture(scope='session')
+
+@pytest.fixture
 def bounce():
-    return Commands()
+    commands = Commands()
+    try:
+        yield commands
+    finally:
+        commands.end()
 
 
 @pytest.fixture
