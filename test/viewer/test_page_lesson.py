@@ -99,6 +99,18 @@ def test_the_pages_steps_of_the_lesson_are_those_of_the_kernel(stage, open_page)
     assert (columns[8] == kernel.boxes_overlap(origin, halves, offsets, halves)).all()
 
 
+def test_angles_are_written_between_minus_180_and_180_degrees_and_zero_has_no_sign(
+    stage, open_page
+):
+    page = open_page(stage.address)
+    angles = [math.pi, -math.pi, 3 * math.pi, -0.5 * math.pi, 5.5 * math.pi, -1e-9, 2 * math.pi]
+    said = page.evaluate(
+        "(angles) => import('/lesson.js').then(({ showDegrees }) => angles.map(showDegrees))",
+        angles,
+    )
+    assert said == ['180.0°', '180.0°', '180.0°', '−90.0°', '−90.0°', '0.0°', '0.0°']
+
+
 # Frozen together: what the overlay draws from, and what the table says.
 LAST = """
 () => bounce.story.count > %d && { ...bounce.story.last, texts: Object.fromEntries(

@@ -46,14 +46,20 @@ export function parts(velocity, normal) {
   return { across, along: minus(velocity, across) };
 }
 
-// An angle between -180 and 180 degrees.
+// An angle above -180 and up to 180 degrees.
 export function degrees(radians) {
   const turns = radians / (2 * Math.PI);
-  return 360 * (turns - Math.round(turns));
+  return 360 * (turns - Math.ceil(turns - 0.5));
+}
+
+// As people write numbers: with a minus sign, and none at a zero.
+export function signed(value, digits) {
+  const text = value.toFixed(digits);
+  return Number(text) < 0 ? text.replace('-', '−') : text.replace('-', '');
 }
 
 export function showDegrees(radians) {
-  return `${degrees(radians).toFixed(1)}°`.replace('-', '−');
+  return `${signed(degrees(radians), 1)}°`;
 }
 
 // A step's contacts of one circle, taken apart: its velocity before and after each.

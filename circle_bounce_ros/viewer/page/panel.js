@@ -1,7 +1,7 @@
 // The words and numbers beside the picture.
 
 import { find, write } from './dom.js';
-import { KINDS, dot, length, showDegrees } from './lesson.js';
+import { KINDS, dot, length, showDegrees, signed } from './lesson.js';
 import { metres } from './overlay.js';
 import { raised } from './plots.js';
 
@@ -9,7 +9,7 @@ const PAUSE_ICON = 'M3 2h4v12H3zM9 2h4v12H9z';
 const GO_ON_ICON = 'M4 2l10 6-10 6z';
 
 const speed = (value) => `${value.toFixed(3)} m/s`;
-const signed = (value) => `${value < 0 ? '−' : ''}${Math.abs(value).toFixed(2)}`;
+const part = (value) => signed(value, 2);
 
 export function showTime(seconds) {
   if (seconds === null) return 'not known';
@@ -74,8 +74,8 @@ export function showContact(last) {
   write('s-before', speed(length(before)));
   write('s-after', speed(length(after)));
   const side = [-normal[1], normal[0]];
-  write('p-across', `${signed(dot(bp.across, normal))} → ${signed(dot(ap.across, normal))} m/s`);
-  write('p-along', `${signed(dot(bp.along, side))} → ${signed(dot(ap.along, side))} m/s`);
+  write('p-across', `${part(dot(bp.across, normal))} → ${part(dot(ap.across, normal))} m/s`);
+  write('p-along', `${part(dot(bp.along, side))} → ${part(dot(ap.along, side))} m/s`);
   find('note-locked').hidden = !last.isLocked;
   find('note-free').hidden = last.isLocked;
 }
