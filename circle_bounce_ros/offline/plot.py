@@ -22,6 +22,7 @@ from circle_bounce_ros.offline.pictures.speeds import speeds
 from circle_bounce_ros.offline.pictures.style import Picture
 from circle_bounce_ros.offline.pictures.trajectories import trajectories
 from circle_bounce_ros.offline.source import Source, SourceError, of_scene
+from circle_bounce_ros.offline.stopping import INTERRUPTED
 from circle_bounce_ros.offline.summary import SUMMARY, is_parameter
 from circle_bounce_ros.offline.ticks import LARGEST_RATE
 from circle_bounce_ros.scene_file import load_scene
@@ -78,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0; 1 when something is wrong.
+        0; 1 when something is wrong; 130 after Ctrl-C.
 
     """
     chosen = arguments_of(arguments)
@@ -91,6 +92,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f'{COMMAND}: {error.filename or ""}: {error.strerror or error}', file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        return INTERRUPTED
     print(f'{path}: {style.describe(numbers)}')
     return 0
 

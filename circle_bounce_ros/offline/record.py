@@ -17,7 +17,7 @@ from circle_bounce_ros.offline.bag import Bag, topics_of
 from circle_bounce_ros.offline.parquet import TABLES, ParquetFolder
 from circle_bounce_ros.offline.recording import Sink, moments
 from circle_bounce_ros.offline.repair import RepairError, repair
-from circle_bounce_ros.offline.stopping import Stopping
+from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping
 from circle_bounce_ros.offline.ticks import Ticks
 from circle_bounce_ros.scene_file import load_scene
 
@@ -83,6 +83,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f'{COMMAND}: {error.filename or ""}: {error.strerror}', file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        # In a repair, which leaves everything as it was; a recording takes note of it itself.
+        return INTERRUPTED
 
 
 def record(chosen: argparse.Namespace) -> int:

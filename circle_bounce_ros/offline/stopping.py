@@ -9,6 +9,9 @@ from multiprocessing import resource_tracker
 from types import FrameType, TracebackType
 from typing import Any
 
+# What a shell expects of a program that Ctrl-C has ended.
+INTERRUPTED = 128 + signal.SIGINT
+
 
 class Stopping:
     """

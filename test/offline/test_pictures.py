@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import signal
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from circle_bounce_ros.offline.bag_source import of_bag
 from circle_bounce_ros.offline.expected import billiard_of
 from circle_bounce_ros.offline.observables import open_border
 from circle_bounce_ros.offline.pictures import style
+from circle_bounce_ros.offline.pictures.free_path import free_path
 from circle_bounce_ros.offline.pictures.speeds import speeds
 from circle_bounce_ros.offline.plot import main
 from circle_bounce_ros.offline.source import of_scene
@@ -235,6 +237,34 @@ def test_what_is_wrong_is_said_and_leaves_nothing(
     assert main(arguments) == 1
     assert reason in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_ends_it_without_a_picture_and_without_a_word(tmp_path, capsys):
+    arguments = ['animation', 'gas', '--duration', '5000', '-o', str(tmp_path / 'a.gif')]
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 1.0)  # s; all of it would take an hour
+    try:
+        assert main(arguments) == 128 + signal.SIGINT
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert capsys.readouterr() == ('', '')
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_line_of_the_theory_is_in_the_picture_however_far_it_is(write_scene):
+    # Up and down only: 0.5 m instead of pi A / P.
+    scene = write_scene(
+        circles=[{'position': [2, 0.5], 'velocity': [0, 1], 'radius': 0.25}],
+        walls=[{'box': {'min': [0, 0], 'max': [4, 1]}}],
+    )
+    figure, numbers = free_path(of_scene(load_scene(scene), 20.0, 10.0))
+    assert numbers['mean free path'] == pytest.approx(0.5, rel=0.05)
+    theory = math.pi * 3.5 * 0.5 / 8.0
+    assert numbers['theory path'] == pytest.approx(theory)
+    for axes, value in zip(figure.axes, (theory, 1.0 / theory), strict=True):
+        low, high = axes.get_ylim()
+        assert low < value < high
 
 
 def test_a_picture_that_is_there_is_not_written_over(tmp_path, capsys):

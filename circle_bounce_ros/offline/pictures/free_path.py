@@ -67,20 +67,17 @@ def free_path(source: Source) -> Picture:
     # Pairs come with both ends at once: as many independent counts as pairs.
     error = np.sqrt((2.0 if window else 1.0) / np.maximum(counts.ends, 1.0))
     seen = counts.ends > 0.0
+    time, error = counts.time[seen], error[seen]
     path = counts.way[seen] / counts.ends[seen]
     rate = counts.ends[seen] / counts.circle_time[seen]
     figure, (left, right) = canvas(3.9, columns=2)
-    draw(left, counts, seen, path, path * error[seen])
-    draw(right, counts, seen, rate, rate * error[seen])
-    numbers = numbers_of(counts, theory)
-    if theory:
-        left.axhline(theory.path, color=INK, linewidth=1.8, label=theory.path_formula)
-        right.axhline(theory.rate, color=INK, linewidth=1.8, label=theory.rate_formula)
+    draw(left, time, path, path * error, theory and (theory.path, theory.path_formula))
+    draw(right, time, rate, rate * error, theory and (theory.rate, theory.rate_formula))
     for axes in (left, right):
-        axes.legend(loc='upper right', fontsize=10.0)
+        axes.set_xlim(0.0, counts.end)
     title(left, f'{source.name}: mean free path / m')
     title(right, 'contacts of a circle, per second')
-    return figure, numbers
+    return figure, numbers_of(counts, theory)
 
 
 def count(source: Source, window: Window | None) -> Counts:
@@ -127,22 +124,27 @@ def count(source: Source, window: Window | None) -> Counts:
 
 def draw(
     axes: Axes,
-    counts: Counts,
-    seen: NDArray[np.bool_],
+    time: NDArray[np.float64],
     values: NDArray[np.float64],
     errors: NDArray[np.float64],
+    theory: tuple[float, str] | None,
 ) -> None:
-    """Draw the measured points of a panel, which shows them and their bars closely."""
+    """Draw a panel: measured points with their bars and the theory with its name, seen closely."""
     axes.errorbar(
-        counts.time[seen], values, errors, fmt='o', color=MOVING, markersize=4.5, elinewidth=1.2,
+        time, values, errors, fmt='o', color=MOVING, markersize=4.5, elinewidth=1.2,
         label='measured',
     )  # fmt: skip
-    middle = float(values.mean())
-    off = max(LEAST_VIEW * middle, float((np.abs(values - middle) + errors).max()))
+    lowest, highest = float((values - errors).min()), float((values + errors).max())
+    if theory:
+        line, formula = theory
+        axes.axhline(line, color=INK, linewidth=1.8, label=formula)
+        lowest, highest = min(lowest, line), max(highest, line)
+    middle = (lowest + highest) / 2.0
+    off = max(LEAST_VIEW * middle, (highest - lowest) / 2.0)
     # Room for the legend above.
     axes.set_ylim(max(0.0, middle - 1.15 * off), middle + 1.9 * off)
-    axes.set_xlim(0.0, counts.end)
     axes.set_xlabel('time / s')
+    axes.legend(loc='upper right', fontsize=10.0)
 
 
 def numbers_of(counts: Counts, theory: Expected | None) -> dict[str, float]:
