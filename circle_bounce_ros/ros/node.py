@@ -75,9 +75,9 @@ class BounceNode(Node):
         self._ticker = Ticker(self, steady, self._on_timer, self._timeline.timer_period_ns)
         self.create_timer(DIAGNOSTICS_PERIOD, self._on_second, clock=steady)
 
-    def _show_scene(self) -> None:
+    def _show_scene(self, contacts_before: int = 0) -> None:
         scene = self._settings.scene
-        self._runner = Runner(scene)
+        self._runner = Runner(scene, contacts_before)
         self._outputs.show(scene)
         self._timeline.set_restart_after(scene.restart_after)
         self.get_logger().info(f'{describe(scene)} in frame {self._settings["frame_id"]!r}')
@@ -156,7 +156,7 @@ class BounceNode(Node):
     def _on_change(self, names: set[str]) -> None:
         with self._lock:
             if names & {'scene', 'seed'}:
-                self._show_scene()
+                self._show_scene(self._runner.contact_count)
                 self._timeline.restart()
             if 'rate' in names:
                 self._timeline.set_rate(self._settings['rate'])

@@ -42,13 +42,15 @@ class Runner:
     Parameters
     ----------
     scene : Scene
+    contacts_before : int
+        How many there have been in earlier scenes.
 
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, contacts_before: int = 0) -> None:
         self._simulation = start(scene)
         self._energy = kinetic_energy(self._simulation)
-        self._contacts_before = 0
+        self._contacts_before = contacts_before
 
     @property
     def scene(self) -> Scene:
@@ -62,7 +64,7 @@ class Runner:
 
     @property
     def contact_count(self) -> int:
-        """How many contacts there have been, restarts included."""
+        """How many contacts there have been, restarts and earlier scenes included."""
         return self._contacts_before + self._simulation.contact_count
 
     @property

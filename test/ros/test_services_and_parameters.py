@@ -311,6 +311,14 @@ def test_diagnostics_come_every_second_and_at_once_on_a_change(start, observer, 
     apart = nanoseconds(second.header.stamp) - nanoseconds(first.header.stamp)
     assert 0.5 * SECOND < apart < 1.5 * SECOND
 
+    # A scene of many contacts a second gives way to one of few: what is counted must not go back.
+    observer.set(scene='gas')
+    observer.spin_until(
+        lambda: float(values_of(diagnostics[-1])['contacts/s']) > 1_000.0, 'the contacts of a gas'
+    )
+    observer.set(scene=str(lesson))
+    assert all(float(values_of(m)['contacts/s']) >= 0.0 for m in observer.collect(diagnostics, 4))
+
     for change, key, value in (
         (observer.pause, 'paused', 'true'),
         (lambda: observer.set(time_scale=3.0), 'time_scale', '3.0'),
