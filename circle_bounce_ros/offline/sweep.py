@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import asyncio
 import fcntl
 import logging
 import os
@@ -204,7 +205,7 @@ def carry_out(
         while waiting:
             try:
                 done = wait(waiting, PATIENCE, 'FIRST_COMPLETED').done
-            except TimeoutError:
+            except asyncio.TimeoutError:  # another one than TimeoutError before Python 3.11
                 done = set()
             except CancelledError:
                 raise SweepError(GONE) from None
