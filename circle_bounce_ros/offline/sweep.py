@@ -175,6 +175,8 @@ def connect(chosen: argparse.Namespace, runs: int) -> Iterator[Any]:
                 n_workers=workers,
                 threads_per_worker=1,
                 dashboard_address=None,
+                # Without a dashboard it still serves HTTP, else on port 8787, which a second sweep finds taken.
+                scheduler_kwargs={'dashboard_address': '127.0.0.1:0'},
                 host='127.0.0.1',
                 silence_logs=logging.CRITICAL,
             )

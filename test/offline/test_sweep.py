@@ -7,6 +7,8 @@ import json
 import math
 import os
 import signal
+import socket
+from contextlib import ExitStack, suppress
 
 import pytest
 from conftest import files_of, wait_until
@@ -129,6 +131,14 @@ def test_results_do_not_depend_on_the_number_of_workers(tmp_path, bounce, write_
     if record == 'bag':
         with Reader(tmp_path / 'two/runs/000000/000000003/recording') as reader:
             assert {c.topic: c.msgcount for c in reader.connections}['/poses'] == 80
+
+
+def test_a_sweep_needs_no_port_that_another_one_has(tmp_path, bounce, write_sweep):
+    with ExitStack() as held:
+        with suppress(OSError):  # when somebody else has it, it is taken just as well
+            held.enter_context(socket.create_server(('', 8787)))  # where Dask shows its dashboard
+        bounce.run('bounce_sweep', write_sweep(), '-o', tmp_path / 'out', '--workers', 1)
+    assert len(rows_of(tmp_path / 'out')) == 6
 
 
 def test_started_again_after_a_kill_it_does_only_what_is_missing(tmp_path, bounce, write_sweep):
