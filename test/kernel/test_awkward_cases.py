@@ -296,6 +296,27 @@ def test_the_tournament_knows_the_earliest_time_and_whose_it_is():
         assert times[world.tree_who[1]] == min(times)
 
 
+@pytest.mark.parametrize('others', [0, 40])
+@pytest.mark.parametrize('collide', [False, True])
+def test_contacts_without_end_are_found_at_their_instant(others, collide):
+    """A circle glides along a slot that fits exactly, until a locked one turns it against the walls."""
+    slot = [Wall((-5.0, 0.0), (9.0, 0.0)), Wall((-5.0, 1.0), (9.0, 1.0))]
+    glides = Circle((0.0, 0.5), (1.0, 0.0), radius=0.5, name='stuck')
+    busy = [Circle((0.0, 3.0 + 2.0 * k), (0.0, 0.3), radius=0.5) for k in range(others)]
+    post = locked(6.0, 0.9, 0.2)
+    scene = Scene([glides, *busy, post], slot, moving_circles_collide=collide)
+    simulation = Simulation(scene, record_contacts=True)
+    with pytest.raises(EndlessContactsError, match='stuck'):
+        simulation.advance_to(20.0)
+    touch = 6.0 - math.sqrt(0.7**2 - 0.4**2)
+    assert math.isclose(simulation.time, touch, rel_tol=1e-9)
+    # Contacts are without end while nothing travels further than 1e-9 radii.
+    assert np.allclose(simulation.positions[0], [touch, 0.5], rtol=0, atol=1e-8)
+    assert np.allclose(
+        simulation.positions[1:, 1], [3.0 + 2.0 * k + 0.3 * touch for k in range(others)]
+    )
+
+
 def test_contacts_without_end_are_an_error_and_never_a_hang():
     """A slot that fits exactly, the circle pushed across it."""
     slot = [Wall((-5.0, 0.0), (5.0, 0.0)), Wall((-5.0, 1.0), (5.0, 1.0))]

@@ -9,9 +9,9 @@ The same contacts at the same instants as `loop` would find, to the last digit.
 from __future__ import annotations
 
 from circle_bounce_ros.kernel.engine.bounce import bounce_off
-from circle_bounce_ros.kernel.engine.grid import list_number, plan_cell
+from circle_bounce_ros.kernel.engine.grid import list_number
 from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS, LOG_FULL, set_clock_back
-from circle_bounce_ros.kernel.engine.plan import plan_locked
+from circle_bounce_ros.kernel.engine.plan import plan_cell, plan_locked
 from circle_bounce_ros.kernel.engine.records import DOWN, NOTHING, Record, World
 from circle_bounce_ros.kernel.impact import NEVER
 

@@ -5,16 +5,9 @@ from __future__ import annotations
 import math
 
 from circle_bounce_ros.kernel.contact import unit_xy
+from circle_bounce_ros.kernel.engine.motion import move_to
 from circle_bounce_ros.kernel.engine.records import CIRCLE, WALL, Record, World
 from circle_bounce_ros.kernel.reflection import exchange_xy, push_xy, reflect_xy
-
-
-def move_to(circle: Record, time: float) -> None:
-    """Take a circle along its straight path to a time, and make that its own."""
-    past = time - circle.time
-    circle.x += circle.vx * past
-    circle.y += circle.vy * past
-    circle.time = time
 
 
 def collide(world: World, i: int, j: int, time: float) -> None:

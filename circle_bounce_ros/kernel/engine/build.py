@@ -34,7 +34,8 @@ Array = NDArray[Any]
 RADII_PER_SPAN = 1024.0
 
 # More than PATIENCE + PATIENCE_PER_CIRCLE n contacts while nothing travels further than CROWD_RADII radii are
-# contacts without end. Less patience could refuse a long chain of simultaneous contacts.
+# contacts without end. Less patience could refuse a long chain of simultaneous contacts. Of circles that pass through
+# each other each is counted on its own, n = 1, and never beyond a full block of the log.
 PATIENCE = 1000
 PATIENCE_PER_CIRCLE = 100
 CROWD_RADII = 1e-9
@@ -96,7 +97,7 @@ def build(scene: Scene, keep_log: bool) -> World:
         edge=grid.widest,
         span=_power_of_two(RADII_PER_SPAN / travel) if travel > 0.0 else 1.0,
         crowd_span=CROWD_RADII / travel if travel > 0.0 else 1.0,
-        patience=PATIENCE + PATIENCE_PER_CIRCLE * count,
+        patience=PATIENCE + PATIENCE_PER_CIRCLE * (count if scene.moving_circles_collide else 1),
     )
 
 

@@ -37,8 +37,8 @@ GAPS_A_CELL_OF_LEVELS = 0.7
 CROWDED = 32
 
 # Its cells, in largest radii, are then as narrow as they can be with guests of up to an eighth of their width.
-COARSE = 8.0 / 7.0
 GUEST = 1.0 / 8.0
+COARSE = 1.0 / (1.0 - GUEST)
 
 # No more cells than this along the longer side: memory.
 MOST_CELLS_A_SIDE = 4096

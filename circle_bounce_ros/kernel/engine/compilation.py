@@ -22,11 +22,11 @@ from types import FunctionType
 from typing import Any
 
 from circle_bounce_ros.kernel.engine.ahead import fetch
+from circle_bounce_ros.kernel.engine.records import CACHE_LINE
 
 KERNEL = Path(__file__).resolve().parents[1]
 PACKAGE = 'circle_bounce_ros.kernel'
 READY = 'ready'
-CACHE_LINE = 64
 
 Function = Callable[..., Any]
 
@@ -53,7 +53,9 @@ def compile_entries(*entries: Function) -> list[Function]:
     """Return compiled twins of functions, which call compiled twins of all that they call."""
     numba: Any = import_module('numba')
     twins: dict[Function, Any] = {}
-    with suppress(ImportError):  # not all that it needs is part of numba's public face
+    with suppress(
+        ImportError, AttributeError
+    ):  # not all that it needs is part of numba's public face
         twins[fetch] = _prefetch()
     previous = numba.config.CACHE_DIR
     folder = cache_directory()
@@ -133,9 +135,15 @@ def cache_directory() -> Path | None:
     for base in (Path(user) / 'circle_bounce_ros', temporary):
         folder = base / digest.hexdigest()[:16]
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError:
             continue
-        if os.access(folder, os.W_OK):
+        if os.access(folder, os.W_OK) and _is_ours(folder):
             return folder
     return None
+
+
+def _is_ours(folder: Path) -> bool:
+    """Return whether nobody else can have put code there; in the temporary folder anybody could have made it."""
+    states = [place.stat() for place in (folder, folder.parent)]
+    return all(state.st_uid == os.getuid() and not state.st_mode & 0o002 for state in states)

@@ -174,7 +174,9 @@ class Alone(Driver):
             self._empty_log()
         if why == ENDLESS:
             self._note_crowded()
-            self._go_back_to(self._reached)
+            instant = float(self.get('epoch') + self.get('time'))
+            self._go_back_to(max(self._reached, instant - self.world.crowd_span))
+            self._reached = max(self._reached, instant)
             return ENDLESS
         self._reached = until
         return DONE if until == time else BUDGET_SPENT

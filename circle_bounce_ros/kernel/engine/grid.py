@@ -19,19 +19,17 @@ home cannot touch who is away; who is on the porch, or away, looks at all that a
 from __future__ import annotations
 
 import math
-from typing import Any
 
+from circle_bounce_ros.kernel.engine.motion import place_at
 from circle_bounce_ros.kernel.engine.records import (
     CIRCLES_AT,
     COUNT_AT,
     DOWN,
     EVERYWHERE,
-    LEFT,
     REACH_AT,
     Record,
     World,
 )
-from circle_bounce_ros.kernel.impact import NEVER
 
 # Cells are wider than they need be by this fraction, so that rounding cannot put two circles that touch out
 # of each other's reach.
@@ -42,22 +40,6 @@ NEAR, FAR = 1, 2
 
 # Of a cell's neighbours, three behind each side and all nine; what is far comes behind them in `world.around`.
 CELLS_AROUND_NEAR = 21
-
-
-def place_at(circle: Record, time: float) -> tuple[Any, Any]:
-    """Return where a circle is at a time, if nothing stops it."""
-    past = time - circle.time
-    return circle.x + circle.vx * past, circle.y + circle.vy * past
-
-
-def read_positions(moving: Any, state: Any, time: float, rows: Any) -> None:
-    """Write where circles are at a time, (n, 2), in the order of the scene."""
-    until = time - state[0].epoch
-    for circle in moving:
-        # As `place_at`, whose call would be a tenth of what a frame of one ball costs.
-        past = until - circle.time
-        rows[circle.rank, 0] = circle.x + circle.vx * past
-        rows[circle.rank, 1] = circle.y + circle.vy * past
 
 
 # ------------------------------------------------------------------ lists
@@ -320,49 +302,3 @@ def is_border(circle: Record, side: int, up: int) -> bool:
     if side >= DOWN:
         line = circle.row
     return ((line + 1 - (side & 1)) & ((1 << up) - 1)) == 0
-
-
-# ------------------------------------------------------------------ when
-
-
-def plan_cell(world: World, circle: Record, now: float) -> None:
-    """Find when a circle leaves its cell, and through which side; when it comes back, if it is away."""
-    circle.time_of_cell = NEVER
-    if circle.level == world.levels:
-        circle.time_of_cell = now + wait_to_enter(world, circle, now)
-        return
-    width = world.tables[circle.level].width
-    if circle.vx != 0.0:
-        ahead = 1 if circle.vx > 0.0 else 0
-        border = world.x0 + width * (circle.column + ahead)
-        circle.time_of_cell = circle.time + (border - circle.x) / circle.vx
-        circle.side = LEFT + ahead
-    if circle.vy != 0.0:
-        ahead = 1 if circle.vy > 0.0 else 0
-        border = world.y0 + width * (circle.row + ahead)
-        time = circle.time + (border - circle.y) / circle.vy
-        if time < circle.time_of_cell:
-            circle.time_of_cell = time
-            circle.side = DOWN + ahead
-
-
-def wait_to_enter(world: World, circle: Record, now: float) -> float:
-    """Return how long the straight path of a circle that is away takes to the porch."""
-    x, y = place_at(circle, now)
-    early = 0.0
-    late = NEVER
-    if circle.vx != 0.0:
-        a = (world.porch_x0 - x) / circle.vx
-        b = (world.porch_x1 - x) / circle.vx
-        early = max(early, min(a, b))
-        late = min(late, max(a, b))
-    elif x < world.porch_x0 or x > world.porch_x1:
-        return NEVER
-    if circle.vy != 0.0:
-        a = (world.porch_y0 - y) / circle.vy
-        b = (world.porch_y1 - y) / circle.vy
-        early = max(early, min(a, b))
-        late = min(late, max(a, b))
-    elif y < world.porch_y0 or y > world.porch_y1:
-        return NEVER
-    return early if early < late else NEVER

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from circle_bounce_ros.kernel.engine.ahead import look_ahead
-from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide, move_to
+from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide
 from circle_bounce_ros.kernel.engine.grid import cross
+from circle_bounce_ros.kernel.engine.motion import move_to
 from circle_bounce_ros.kernel.engine.plan import plan, plan_later
 from circle_bounce_ros.kernel.engine.records import CIRCLE, EVERYWHERE, NOTHING, Record, World
 

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from circle_bounce_ros.kernel.engine import compilation, records
 from circle_bounce_ros.kernel.engine.alone import run_alone
 from circle_bounce_ros.kernel.engine.build import build
-from circle_bounce_ros.kernel.engine.grid import read_positions
 from circle_bounce_ros.kernel.engine.loop import run
+from circle_bounce_ros.kernel.engine.motion import read_positions
 from circle_bounce_ros.kernel.engine.records import World
 from circle_bounce_ros.kernel.scene import Circle, Scene
 

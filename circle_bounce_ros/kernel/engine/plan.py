@@ -7,10 +7,13 @@ never from the moment of looking. So neither the grid nor the order of looking c
 
 from __future__ import annotations
 
-from circle_bounce_ros.kernel.engine.grid import gather, plan_cell, reach_of
+from circle_bounce_ros.kernel.engine.grid import gather, reach_of
+from circle_bounce_ros.kernel.engine.motion import place_at
 from circle_bounce_ros.kernel.engine.records import (
     CIRCLE,
+    DOWN,
     EVERYWHERE,
+    LEFT,
     NOTHING,
     WALL,
     Record,
@@ -112,3 +115,46 @@ def plan_locked(world: World, circle: Record) -> None:
             circle.kind = WALL
             circle.partner = number
     circle.time_of_hit = best
+
+
+def plan_cell(world: World, circle: Record, now: float) -> None:
+    """Find when a circle leaves its cell, and through which side; when it comes back, if it is away."""
+    circle.time_of_cell = NEVER
+    if circle.level == world.levels:
+        circle.time_of_cell = now + wait_to_enter(world, circle, now)
+        return
+    width = world.tables[circle.level].width
+    if circle.vx != 0.0:
+        ahead = 1 if circle.vx > 0.0 else 0
+        border = world.x0 + width * (circle.column + ahead)
+        circle.time_of_cell = circle.time + (border - circle.x) / circle.vx
+        circle.side = LEFT + ahead
+    if circle.vy != 0.0:
+        ahead = 1 if circle.vy > 0.0 else 0
+        border = world.y0 + width * (circle.row + ahead)
+        time = circle.time + (border - circle.y) / circle.vy
+        if time < circle.time_of_cell:
+            circle.time_of_cell = time
+            circle.side = DOWN + ahead
+
+
+def wait_to_enter(world: World, circle: Record, now: float) -> float:
+    """Return how long the straight path of a circle that is away takes to the porch."""
+    x, y = place_at(circle, now)
+    early = 0.0
+    late = NEVER
+    if circle.vx != 0.0:
+        a = (world.porch_x0 - x) / circle.vx
+        b = (world.porch_x1 - x) / circle.vx
+        early = max(early, min(a, b))
+        late = min(late, max(a, b))
+    elif x < world.porch_x0 or x > world.porch_x1:
+        return NEVER
+    if circle.vy != 0.0:
+        a = (world.porch_y0 - y) / circle.vy
+        b = (world.porch_y1 - y) / circle.vy
+        early = max(early, min(a, b))
+        late = min(late, max(a, b))
+    elif y < world.porch_y0 or y > world.porch_y1:
+        return NEVER
+    return early if early < late else NEVER
