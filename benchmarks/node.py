@@ -24,6 +24,7 @@ from typing import Any
 from benchmarks import machine, results
 from benchmarks.rows import row
 from circle_bounce_ros.kernel import compile_ahead
+from tools.run import PROGRAMS
 
 Row = dict[str, Any]
 
@@ -157,7 +158,7 @@ def running_node(scene: Path, rate: float) -> Iterator[subprocess.Popen[bytes]]:
     """Run the node; it must end well, too."""
     options = ['-p', f'scene:={scene}', '-p', f'rate:={rate}', '--log-level', 'warn']
     command = [sys.executable, '-m', 'circle_bounce_ros.ros.node', '--ros-args', *options]
-    node = subprocess.Popen(command)
+    node = subprocess.Popen(command, env={**PROGRAMS['bounce_node'], **os.environ})
     try:
         yield node
     finally:

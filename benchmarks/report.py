@@ -53,7 +53,7 @@ def main() -> None:
     path.write_text(document(folder))
     engine, node = results.load('engine', folder), results.load('node', folder)
     if engine is not None and node is not None:
-        summary.put_into(arguments.readme, engine, node)
+        summary.put_into(arguments.readme, engine, node, results.load('long_run', folder))
     print(f'written to {path}')
 
 

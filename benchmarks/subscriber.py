@@ -8,6 +8,7 @@ what it has found.
 from __future__ import annotations
 
 import json
+import math
 import struct
 import sys
 import time
@@ -104,14 +105,14 @@ def judge(heard: dict[str, list[bytes]], wanted: Any) -> dict[str, Any]:
     }
     period = 1e9 / wanted['rate']
     for messages in heard.values():
-        stamps = [stamp_of(data) for data in messages]
-        gaps = [b - a for a, b in pairwise(stamps)]
-        # A gap of two periods and more: a tick was late by a period.
-        found['late'] = max(found['late'], sum(gap > 2.0 * period for gap in gaps))
-        found['longest_gap_ms'] = max(found['longest_gap_ms'], 1e-6 * max(gaps, default=0))
-        came = len(stamps) / (wanted['seconds'] * wanted['rate'])
+        came = len(messages) / (wanted['seconds'] * wanted['rate'])
         found['arrived'] = min(found['arrived'], came)
     if 'time' in heard:
+        # Each tick says it, and so small a message is not lost as a large one may be.
+        gaps = [b - a for a, b in pairwise(map(stamp_of, heard['time']))]
+        # A gap of two periods and more: a tick was late by a period.
+        found['late'] = sum(gap > 2.0 * period for gap in gaps)
+        found['longest_gap_ms'] = 1e-6 * max(gaps)
         first, last = heard['time'][0], heard['time'][-1]
         passed = stamp_of(last) - stamp_of(first)
         found['real_time_factor'] = (scene_time_of(last) - scene_time_of(first)) / passed
@@ -137,6 +138,7 @@ def largest_error(poses: list[bytes], times: list[bytes], scene: str) -> float:
     scene_times = {stamp_of(data): scene_time_of(data) * 1e-9 for data in times}
     simulation = Simulation(load_scene(scene))
     error = 0.0
+    compared = 0
     for data in poses:
         when = scene_times.get(stamp_of(data))
         if when is not None:
@@ -144,7 +146,9 @@ def largest_error(poses: list[bytes], times: list[bytes], scene: str) -> float:
             x, y = POSITION.unpack_from(data, POSITION_AT)
             truth = simulation.positions[0]
             error = max(error, abs(x - truth[0]), abs(y - truth[1]))
-    return error
+            compared += 1
+    # One topic may begin or end a message before the other.
+    return error if compared > 0.9 * len(poses) else math.inf
 
 
 if __name__ == '__main__':

@@ -14,7 +14,9 @@ END = '<!-- end of what `make bench` makes -->\n'
 MINUTE, FAST = 'slow', 'fast'
 
 
-def put_into(readme: Path, engine: dict[str, Any], node: dict[str, Any]) -> None:
+def put_into(
+    readme: Path, engine: dict[str, Any], node: dict[str, Any], long_run: dict[str, Any] | None
+) -> None:
     """
     Write the short form between its two marks.
 
@@ -29,12 +31,29 @@ def put_into(readme: Path, engine: dict[str, Any], node: dict[str, Any]) -> None
     _, end, after = rest.partition(END)
     if not (begin and end):
         raise ValueError(f'{readme}: must have the lines {BEGIN!r} and {END!r}')
-    readme.write_text(before + begin + short(engine, node) + end + after)
+    readme.write_text(before + begin + short(engine, node, long_run) + end + after)
 
 
-def short(engine: dict[str, Any], node: dict[str, Any]) -> str:
+def short(engine: dict[str, Any], node: dict[str, Any], long_run: dict[str, Any] | None) -> str:
     """Return the short form."""
-    return measured_on(engine) + beside_peers(engine) + accuracy(engine) + live(node)
+    parts = [measured_on(engine), rates(engine, long_run), beside_peers(engine)]
+    return ''.join([*parts, accuracy(engine), live(node)])
+
+
+def rates(engine: dict[str, Any], long_run: dict[str, Any] | None) -> str:
+    """Return what is done in a second, and how far energy goes astray."""
+    found = {row['against']: row for row in engine['rows']}
+    compiled, plain = found['itself, with numba'], found['itself, without numba']
+    text = (
+        f'{compiled["scene"]}: {number(compiled["median"])} million contacts a second of one core, compiled by '
+        f'numba; without it {number(plain["median"])} events a second, and the same bits.'
+    )
+    if long_run is not None:
+        text += (
+            f' After {long_run["contacts"]:.2g} contacts the energy is off by {long_run["energy_error"]:.1e} '
+            '(`make bench-long`).'
+        )
+    return text + '\n\n'
 
 
 def beside_peers(engine: dict[str, Any]) -> str:
@@ -76,7 +95,8 @@ def live(node: dict[str, Any]) -> str:
     """Return a table of what the node costs, somebody listening over DDS."""
     rows = [found for found in node['rows'] if found['least'] is not None]
     lines = (
-        f'| {found["scene"]} | {found["against"]} | {with_spread(found)} {found["unit"]} | {verdict(found)} |\n'
+        f'| {found["scene"]} | {found["against"]} | {with_spread(found)} {found["unit"]}'.rstrip()
+        + f' | {verdict(found)} |\n'
         for found in rows
     )
     return '| the node | | found | |\n|---|---|---|---|\n' + ''.join(lines) + '\n'

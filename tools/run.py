@@ -6,13 +6,20 @@ Standard library only: run with -S it does not wait for ROS to be found.
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
-PROGRAMS = ('bounce_node', 'bounce_viewer')
+CONFIG = Path(__file__).resolve().parents[1] / 'config'
+
+# With what each has in its environment, unless the user's says otherwise: room for messages of many circles.
+PROGRAMS = {
+    'bounce_node': {'FASTRTPS_DEFAULT_PROFILES_FILE': str(CONFIG / 'fastdds_large_messages.xml')},
+    'bounce_viewer': {},
+}
 PATIENCE = 10.0  # s, for both to end
 ENDED_BY_US = (0, -signal.SIGINT, 128 + signal.SIGINT)
 
@@ -27,10 +34,15 @@ def main(arguments: list[str]) -> int:
         signal.signal(number, ask)
     children: list[subprocess.Popen[bytes]] = []
     try:
-        for program in PROGRAMS:
+        for program, environment in PROGRAMS.items():
             # In sessions of their own, so that a Ctrl-C reaches each once: from here.
-            command = [str(folder / program), *arguments]
-            children.append(subprocess.Popen(command, start_new_session=True))
+            children.append(
+                subprocess.Popen(
+                    [str(folder / program), *arguments],
+                    env={**environment, **os.environ},
+                    start_new_session=True,
+                )
+            )
         while all(child.poll() is None for child in children):
             time.sleep(0.1)
         status = next(child.returncode for child in children if child.returncode is not None)

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from installs import PATIENCE, ROOT
@@ -74,6 +75,20 @@ def test_one_signal_ends_node_and_page_with_status_0(start, by):
     assert process.wait(PATIENCE) == 0
     assert not any(is_running(pid) for pid in children)
     assert 'Traceback' not in said()
+
+
+def test_the_node_has_shared_memory_for_the_messages_of_many_circles(start):
+    process, said = start('-p', 'port:=0')
+    wait_for(lambda: "scene 'lesson'" in said())
+    node = next(
+        pid
+        for pid in children_of(process)
+        if 'bounce_node' in Path(f'/proc/{pid}/cmdline').read_text()
+    )
+    maps = Path(f'/proc/{node}/maps').read_text().splitlines()
+    ends = [line.split()[0].split('-') for line in maps if '/dev/shm/fastrtps_' in line]
+    # Of 0.5 MiB, which is usual, a tick of 10,000 circles takes more than all.
+    assert max(int(end, 16) - int(begin, 16) for begin, end in ends) >= 2**24
 
 
 def test_when_the_node_cannot_start_the_page_ends_too(start):
