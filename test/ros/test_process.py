@@ -6,6 +6,7 @@ import contextlib
 import re
 import signal
 import subprocess
+import sys
 from itertools import pairwise
 
 import pytest
@@ -18,6 +19,7 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_topic_name import validate_topic_name
 from sensor_msgs.msg import PointCloud2, TimeReference
 
+from circle_bounce_ros.installation import child_environment
 from circle_bounce_ros.kernel.scene import is_legal_name
 
 LOG_LINE = re.compile(r'\[(\w+)\] \[[\d.]+\] \[[\w.]+\]: (.*)')
@@ -193,3 +195,21 @@ def test_a_legal_circle_name_is_a_legal_topic_name(name):
     elif is_topic():
         # ROS lets these pass, although its rules for names frown on some; we do not.
         assert name in ('_a', 'a__b', 'a/b', '~', 'a{b}')
+
+
+IN_ITS_PROCESS = """
+import gc, rclpy
+from circle_bounce_ros.ros.node import BounceNode
+rclpy.init(args=['--ros-args', '-p', 'scene:=gas'])
+node = BounceNode()
+print('frozen', gc.get_freeze_count())
+node.destroy_node()
+rclpy.try_shutdown()
+"""
+
+
+def test_garbage_collections_pass_over_the_circles_of_the_scene(domain):
+    command = [sys.executable, '-c', IN_ITS_PROCESS]
+    said = subprocess.check_output(command, env=child_environment(), text=True, timeout=60)
+    # Each of the 1,000 circles is an object.
+    assert int(re.search(r'frozen (\d+)', said)[1]) > 1_000
