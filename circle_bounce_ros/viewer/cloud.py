@@ -74,7 +74,7 @@ def read_cloud(message: bytes) -> Cloud:
             }
         )
         points = np.frombuffer(message, point, height * width, HEADER + reader.position)
-    except (struct.error, KeyError, UnicodeDecodeError) as error:
+    except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
         raise ValueError(f'cloud: not readable: {error}') from error
     return Cloud(stamp_of(message), points)
 

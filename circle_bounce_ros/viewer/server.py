@@ -253,7 +253,10 @@ class Server:
             task.add_done_callback(requests.discard)
 
     def _watch(self) -> None:
-        self._link.want_contacts(any(client.circle >= 0 for client in self._clients))
+        is_wanted = any(client.circle >= 0 for client in self._clients)
+        if not is_wanted:
+            self._witness.forget()
+        self._link.want_contacts(is_wanted)
 
     async def _ask(self, client: Client, wanted: dict[str, Any]) -> None:
         try:

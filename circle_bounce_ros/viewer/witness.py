@@ -48,6 +48,11 @@ class Witness:
         """
         self._contacts.append(_cloud_with(CONTACT, contacts))
 
+    def forget(self) -> None:
+        """Forget what came: what comes next may be much later."""
+        self._bodies.clear()
+        self._contacts.clear()
+
     def take(self, circles: set[int]) -> dict[int, list[str]]:
         """
         Return what can be said by now about these circles, as JSON, and forget it.

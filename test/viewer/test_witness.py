@@ -1,13 +1,16 @@
 """Contacts and states, brought together by stamp."""
 
+import asyncio
 import json
 
 import numpy as np
 import pytest
+from viewing import connected, run
 
 from circle_bounce_ros.encoding import BodiesEncoder, ContactsEncoder
 from circle_bounce_ros.kernel import CONTACT, ContactKind
 from circle_bounce_ros.viewer.cloud import read_cloud, stamp_of
+from circle_bounce_ros.viewer.server import Server
 from circle_bounce_ros.viewer.witness import Witness
 
 BODIES = BodiesEncoder('world', [3, 5], [0.1, 0.2])
@@ -41,10 +44,20 @@ def test_a_cloud_is_read_as_it_was_written():
     assert cloud.points['radius'].tolist() == [np.float32(0.1), np.float32(0.2)]
 
 
-@pytest.mark.parametrize('cut', [0, 3, 30, 100, 250])
-def test_a_cloud_that_is_cut_short_is_refused(cut):
-    with pytest.raises(ValueError, match=r'cloud|buffer'):
-        read_cloud(bodies(1, 1.0)[:cut])
+def test_a_cloud_that_is_cut_short_is_refused_wherever_it_is_cut():
+    message = bodies(1, 1.0)
+    # Nobody asks for the last byte, is_dense.
+    for length in range(len(message) - 1):
+        with pytest.raises(ValueError, match=r'cloud|buffer'):
+            read_cloud(message[:length])
+
+
+def test_a_cloud_that_claims_more_points_than_can_be_counted_is_refused():
+    message = bytearray(bodies(1, 1.0))
+    # Height and width, behind the header of CDR, the stamp and the frame's name.
+    message[24:32] = b'\xff' * 8
+    with pytest.raises(ValueError, match='cloud: not readable'):
+        read_cloud(bytes(message))
 
 
 def test_a_cloud_without_the_fields_of_a_contact_is_refused_by_name(witness):
@@ -109,3 +122,46 @@ def test_a_clock_that_jumps_back_stops_nothing(witness):
         witness.hear(contacts(stamp, (3, 0, ContactKind.WALL)))
         said += witness.take({3}).get(3, [])
     assert len(said) == 2
+
+
+class Nowhere:
+    """What the server asks of its RosLink, without ROS."""
+
+    port = 0
+    node_name, bodies_topic = '/bounce', '/bodies'
+
+    def __init__(self):
+        self.wanted = asyncio.Queue()
+
+    def want_contacts(self, wanted):
+        self.wanted.put_nowait(wanted)
+
+    def count_publishers(self):
+        return 0
+
+
+def test_what_came_before_nobody_had_a_circle_selected_is_no_before():
+    later = 600 * 10**9
+
+    async def look():
+        server, link = Server(), Nowhere()
+        address, _ = await server.start(link)
+        try:
+            async with connected(address) as page:
+                await page.say(type='select', circle=3)
+                assert await link.wanted.get()
+                server.hear('bodies', bodies(10, 1.0))
+                server.hear('contacts', contacts(20, (3, 0, ContactKind.WALL)))
+                await page.say(type='select', circle=-1)
+                assert not await link.wanted.get()
+                await page.say(type='select', circle=3)
+                assert await link.wanted.get()
+                for stamp, speed in ((later, 2.0), (later + 10, 3.0)):
+                    server.hear('bodies', bodies(stamp, speed))
+                    server.hear('contacts', contacts(stamp, (3, 0, ContactKind.WALL)))
+                return await page.said(type='contacts')
+        finally:
+            await server.stop()
+
+    story = run(look())
+    assert (story['before']['vx'], story['after']['vx']) == (2.0, 3.0)
