@@ -65,6 +65,39 @@ def test_trails_end_where_the_scene_begins_again(show, straight):
     assert picture.contrast[py, px : px + 20].max() < 6
 
 
+REMEMBER = """
+(count) => {
+  const { picture, world: { bytes, cloud } } = bounce;
+  picture.forget();
+  const past = [];
+  for (let tick = 0; tick <= 600; tick += 1) {
+    picture.setBodies({ bytes, cloud, count, seconds: tick / 60 }, true, 4);
+    past.push(picture.past.map(({ time }) => time));
+  }
+  return past;
+}
+"""
+
+
+@pytest.mark.parametrize('count', [1, 160, 1000, 4000])
+def test_trails_of_many_circles_have_fewer_pieces_and_the_same_length(show, count):
+    past = show(paused=True).evaluate(REMEMBER, count)
+    longest_piece = max(4 * count / 40000, 0) + 2 / RATE
+    for tick, times in enumerate(past):
+        assert times[-1] == tick / 60, 'it reaches to the circle'
+        assert 4 - longest_piece < times[-1] - times[0] <= 4 or times[0] == 0
+        assert np.diff(times).max(initial=0) < longest_piece
+        assert len(times) - 1 <= min(4 * RATE, 40000 / count) + 1
+
+
+def test_where_trails_would_be_too_many_the_page_says_so(show, many):
+    page = show(many, 10000)
+    assert text_of(page, 'trails-value') == 'off'
+    page.locator('#trails').fill('4')
+    assert text_of(page, 'trails-value') == 'too many circles'
+    assert page.locator('#trails').input_value() == '0'
+
+
 # Speeds
 
 

@@ -7,6 +7,9 @@ const LARGEST_POINT = 60; // device pixels
 // A point vanishes when its centre leaves the picture; so what is drawn is larger than the picture by this.
 const BORDER = 64; // device pixels
 const MOST_TRAIL_LINES = 40000;
+const MOST_PIECES = 600; // of one trail
+const LEAST_PIECES = 10; // of one trail: with fewer, what turns at contacts would be cut short
+export const MOST_TRAILS = MOST_TRAIL_LINES / LEAST_PIECES; // circles
 const WALL_WIDTH = 2; // CSS pixels
 
 const COMMON = `#version 300 es
@@ -191,17 +194,17 @@ export class Picture {
     this.wallCount = world.walls.length;
   }
 
-  // Keeps frames for `trail` seconds; after a jump the trails begin anew.
+  // Keeps frames for `trail` seconds, so far apart that they make no more lines than can be drawn; after a jump
+  // the trails begin anew.
   setBodies(world, goesOn, trail) {
     const { gl } = this;
     const now = world.seconds ?? performance.now() / 1000;
     if (!goesOn) this.forget();
-    const most = Math.min(600, Math.floor(MOST_TRAIL_LINES / Math.max(1, world.count)));
-    while (this.past.length && (now - this.past[0].time > trail || this.past.length > most)) {
-      this.spare.push(this.past.shift());
-    }
-    const last = this.past[this.past.length - 1];
-    const frame = last && last.time === now ? this.past.pop() : this.spare.pop() ?? { buffer: gl.createBuffer() };
+    const apart = trail / Math.min(MOST_PIECES, MOST_TRAIL_LINES / Math.max(1, world.count));
+    while (this.past.length && now - this.past[0].time > trail) this.spare.push(this.past.shift());
+    const [last, before] = this.past.slice(-2).reverse();
+    const isPassedOver = before && last.time - before.time < apart;
+    const frame = isPassedOver || last?.time === now ? this.past.pop() : this.spare.pop() ?? { buffer: gl.createBuffer() };
     gl.bindBuffer(gl.ARRAY_BUFFER, frame.buffer);
     gl.bufferData(gl.ARRAY_BUFFER, world.bytes, gl.STREAM_DRAW);
     Object.assign(frame, { cloud: world.cloud, count: world.count, time: now });

@@ -2,6 +2,7 @@
 
 import { IDENTITY, LOOKS, SPEED_RAMP } from './colours.js';
 import { find, write } from './dom.js';
+import { MOST_TRAILS } from './gl.js';
 
 const FEW = 8; // circles that are told apart by colour rather than by speed
 const FEW_TRAILS = 64; // circles whose trails can be told apart
@@ -82,9 +83,11 @@ export class Looks {
   // null: what suits the scene. Many trails tell nothing and cost much.
   setTrail(seconds) {
     this.trailChoice = seconds;
-    this.trail = seconds ?? (CALM.matches || this.count > FEW_TRAILS ? 0 : USUAL_TRAIL);
+    const isTooMany = this.count > MOST_TRAILS;
+    const suits = CALM.matches || this.count > FEW_TRAILS ? 0 : USUAL_TRAIL;
+    this.trail = isTooMany ? 0 : seconds ?? suits;
     find('trails').value = String(this.trail);
-    write('trails-value', this.trail ? `${this.trail} s` : 'off');
+    write('trails-value', this.trail ? `${this.trail} s` : isTooMany && seconds ? 'too many circles' : 'off');
     this.changed();
   }
 
