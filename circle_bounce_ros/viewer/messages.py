@@ -7,8 +7,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-# The longest message accepted, bytes. A scene's path is the longest thing that a page has to say.
-LARGEST_MESSAGE = 1024
+# The longest message accepted, bytes. A scene's path is the longest thing that a page has to say, with up to six
+# bytes a character.
+LARGEST_MESSAGE = 4096
 
 LARGEST_ID = 2**32 - 1  # what `bodies` can hold
 LARGEST_WHOLE = 2**53 - 1  # what JavaScript can count to

@@ -5,7 +5,7 @@ import http.server
 import threading
 
 import pytest
-from browsing import PATIENCE, text_of, wait_for_circles, wait_for_values, wait_until
+from browsing import PATIENCE, press, text_of, wait_for_circles, wait_for_values, wait_until
 
 
 def wait_for_notice(page, words):
@@ -59,6 +59,8 @@ def test_the_page_comes_back_when_the_viewer_does(show, stage):
     # What is asked for meanwhile is refused in words.
     page.locator('#reset').click()
     wait_until(page, "document.getElementById('answer').innerText.includes('no connection')")
+    page.locator('#scene').select_option('gas')
+    assert page.locator('#scene').input_value() == 'lesson'
     stage.start_viewer()
     wait_for_no_notice(page)
     first = page.evaluate('bounce.received')
@@ -67,6 +69,23 @@ def test_the_page_comes_back_when_the_viewer_does(show, stage):
     count = page.evaluate('bounce.story.count')
     wait_until(page, f'bounce.story.count > {count}', 'a contact of the selected circle')
     wait_until(page, "document.getElementById('state').innerText === 'running'")
+
+
+STAY_SLOW = """
+bounce.pace.isSlow && bounce.node.values.time_scale === '0.12' && (bounce.pace.followContact = () => {}, true)
+"""
+
+
+def test_slow_motion_ends_although_the_viewer_ended_within_it(show, stage):
+    page = show()
+    press(page, 'm')
+    wait_until(page, STAY_SLOW)
+    assert stage.viewer.end() == 0
+    wait_for_notice(page, 'No connection to the viewer')
+    stage.start_viewer()
+    wait_for_no_notice(page)
+    wait_for_values(page, time_scale='1.0')
+    wait_until(page, "document.getElementById('speed-value').innerText === '1 ×'")
 
 
 def test_where_nothing_is_published_the_page_says_so_and_what_to_do(lone_viewer, open_page):

@@ -97,6 +97,33 @@ def test_a_report_from_before_a_change_does_not_undo_it(stage, open_page):
     }
 
 
+LOST_END = """
+async () => {
+  const { Pace } = await import('/pace.js');
+  const sent = [];
+  const pace = new Pace((message) => { sent.push(message.value); return true; });
+  const said = (value) => { pace.hear(value, performance.now()); return pace.chosen; };
+  said(2);
+  pace.followContact(0, { time: 0.01 });
+  said(0.24);
+  pace.forget();
+  const log = { back: said(0.24), beforeItIsDone: said(0.24), done: said(2), byOthers: said(0.24) };
+  return { ...log, sent };
+}
+"""
+
+
+def test_slow_motion_that_was_cut_off_is_not_taken_for_the_speed_chosen(stage, open_page):
+    log = open_page(stage.address).evaluate(LOST_END)
+    assert log == {
+        'back': 2,
+        'beforeItIsDone': 2,
+        'done': 2,
+        'byOthers': 0.24,
+        'sent': [0.24, 2],
+    }
+
+
 def test_the_chooser_loads_scenes_and_shows_refusals_in_words(lesson_page, observer):
     page = lesson_page
     times = observer.listen(TimeReference, 'time')
@@ -127,6 +154,55 @@ def test_a_file_is_loaded_by_its_path_and_the_chooser_says_so(lesson_page, tmp_p
     wait_for_values(page, scene='own')
     assert page.locator('#scene').input_value() == '…'
     assert page.locator('#own').is_visible()
+
+
+def ask_and_wait(page, ask, answer):
+    """Do something that is answered in these words, over the same connection as before."""
+    page.evaluate("document.getElementById('answer').textContent = ''")
+    ask()
+    wait_until(page, f"document.getElementById('answer').textContent.includes({answer!r})")
+
+
+@pytest.mark.parametrize(
+    ('field', 'text'), [('seed', '-5'), ('seed', '1e20'), ('own', 'a\u200bb.yaml')]
+)
+def test_what_cannot_be_asked_for_is_refused_at_its_field_and_the_connection_stays(
+    lesson_page, field, text
+):
+    page = lesson_page
+    page.evaluate('window.socket = bounce.link.socket')
+    scene = page.locator('#scene')
+    if field == 'own':
+        scene.select_option('…')
+    page.locator(f'#{field}').fill(text)
+    # To choose another scene loads it, too.
+    if field == 'own':
+        page.get_by_role('button', name='Load').click()
+    else:
+        scene.select_option('mixed')
+    assert page.evaluate(f"document.getElementById('{field}').validationMessage") != ''
+    assert page.evaluate('document.activeElement.id') == field
+    ask_and_wait(page, page.get_by_role('button', name='Step').click, 'pause')
+    assert page.evaluate('window.socket === bounce.link.socket')
+
+
+def test_the_longest_path_is_refused_by_the_node(lesson_page):
+    page = lesson_page
+    page.locator('#scene').select_option('…')
+    page.locator('#own').fill('球' * 400)
+    ask_and_wait(page, page.get_by_role('button', name='Load').click, 'Refused')
+    assert page.locator('#own').is_visible(), 'to be mended'
+
+
+def test_after_a_refusal_the_chooser_shows_the_nodes_scene_and_the_refused_one_can_be_chosen_again(
+    show,
+):
+    page = show('mixed', 160)
+    # As where the node is of another version than the viewer.
+    page.evaluate("document.getElementById('scene').add(new Option('gone', 'gone'))")
+    for _ in range(2):
+        ask_and_wait(page, lambda: page.locator('#scene').select_option('gone'), 'Refused')
+        assert page.locator('#scene').input_value() == 'mixed'
 
 
 # Each key, and what is true when it has done its work. In this order they leave nothing switched on.

@@ -302,6 +302,23 @@ def test_slow_motion_begins_before_a_contact_and_ends_after_it(lesson_page):
     wait_until(page, "document.getElementById('speed-value').innerText === '1 ×'")
 
 
+# As a browser does with a tab that nobody sees.
+HIDE_IN_SLOW_MOTION = """
+bounce.pace.isSlow && bounce.node.values.time_scale === '0.12' && (() => {
+  window.requestAnimationFrame = () => 0;
+  Object.defineProperty(document, 'hidden', { value: true });
+  document.dispatchEvent(new Event('visibilitychange'));
+  return true;
+})()
+"""
+
+
+def test_slow_motion_ends_when_the_page_is_hidden(lesson_page):
+    press(lesson_page, 'm')
+    wait_until(lesson_page, HIDE_IN_SLOW_MOTION)
+    wait_for_values(lesson_page, time_scale='1.0')
+
+
 def test_squares_light_up_when_they_overlap_and_circles_do_not(show, tmp_path):
     path = tmp_path / 'corner.yaml'
     path.write_text(

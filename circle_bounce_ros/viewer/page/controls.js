@@ -4,7 +4,7 @@ import { find } from './dom.js';
 import { Keyboard } from './keyboard.js';
 import { SPEEDS } from './pace.js';
 import { bindPointer } from './pointer.js';
-import { bindScenes } from './scenes.js';
+import { bindScenes, hearRefusal } from './scenes.js';
 
 const ZOOM = 1.3; // of a button or a key
 const MOVE = 60; // CSS pixels, of an arrow key
@@ -52,7 +52,7 @@ export function bindControls(app) {
   bindScenes(({ scene, seed }) => {
     looks.choice = null;
     pace.endSlow();
-    node.ask({ type: 'scene', scene, seed });
+    if (!node.ask({ type: 'scene', scene, seed })) hearRefusal(node.values.scene);
   });
 
   const keyboard = new Keyboard({

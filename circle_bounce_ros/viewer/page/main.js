@@ -11,7 +11,7 @@ import { Overlay } from './overlay.js';
 import { Pace } from './pace.js';
 import { describeScene, showApproach, showContact, showReport, showSquares, showTime } from './panel.js';
 import { EnergyPlot, drawSpeeds } from './plots.js';
-import { fillScenes, showScene } from './scenes.js';
+import { fillScenes, hearRefusal, showScene } from './scenes.js';
 import { Story } from './story.js';
 import { View } from './view.js';
 import { World } from './world.js';
@@ -68,6 +68,8 @@ class App {
     requestAnimationFrame((now) => this.animate(now));
     window.setInterval(() => this.watch(), WATCH_PERIOD);
     window.addEventListener('pagehide', () => this.pace.endSlow());
+    // What is hidden is not drawn, and it is the drawing that ends slow motion.
+    document.addEventListener('visibilitychange', () => document.hidden && this.pace.endSlow());
   }
 
   // What comes in
@@ -108,6 +110,7 @@ class App {
     else if (message.type === 'contacts') this.story.hear(message);
     else if (message.type === 'answer') {
       const { to, done, text } = message;
+      if (to === 'scene' && !done) hearRefusal(this.node.values.scene);
       if (to !== 'time_scale' || this.pace.hearAnswer(done)) announce(text, !done);
     }
   }

@@ -23,8 +23,11 @@ export class RemoteNode {
     return isOther;
   }
 
+  // Returns whether it could be sent.
   ask(message) {
-    if (!this.send(message)) announce('no connection to the viewer', true);
+    const isSent = this.send(message);
+    if (!isSent) announce('no connection to the viewer', true);
+    return isSent;
   }
 
   pause() { this.ask({ type: 'pause', paused: !this.paused }); }

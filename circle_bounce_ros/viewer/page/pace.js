@@ -16,6 +16,7 @@ export class Pace {
     this.send = send;
     this.chosen = 1;
     this.timer = null;
+    this.slowed = null; // what slow motion has asked for, until the node reports that it is over
     this.forget();
   }
 
@@ -35,7 +36,14 @@ export class Pace {
   // The node's report. One from before the last change must not undo that.
   hear(timeScale, now) {
     if (this.awaited === timeScale || now - this.asked > PATIENCE) this.awaited = null;
-    if (this.awaited === null && this.timer === null && !this.isSlow) this.chosen = timeScale;
+    if (this.awaited === null && this.timer === null && !this.isSlow) {
+      // Slow motion whose end got lost, with the connection or with an answer, is nobody's choice.
+      if (timeScale === this.slowed) this.askQuietly();
+      else {
+        this.slowed = null;
+        this.chosen = timeScale;
+      }
+    }
     this.show();
   }
 
@@ -49,8 +57,13 @@ export class Pace {
 
   ask() {
     this.awaited = this.rate;
+    if (this.isSlow) this.slowed = this.rate;
     this.asked = performance.now();
     return this.send({ type: 'time_scale', value: this.rate });
+  }
+
+  askQuietly() {
+    if (this.ask()) this.quiet += 1;
   }
 
   choose(index) {
@@ -90,7 +103,7 @@ export class Pace {
 
   turn(isSlow) {
     this.isSlow = isSlow;
-    if (this.ask()) this.quiet += 1;
+    this.askQuietly();
     this.show();
   }
 
