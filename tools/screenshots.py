@@ -63,7 +63,9 @@ ANSWERED = "getComputedStyle(document.getElementById('answer')).opacity === '0'"
 def main() -> None:
     into = Path(sys.argv[1]) if len(sys.argv) > 1 else PICTURES
     into.mkdir(parents=True, exist_ok=True)
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    # Else a node that runs already would be heard.
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
     with tempfile.TemporaryDirectory() as folder, drive() as playwright:
         browser = launch(playwright)
         for name, scene, size, scheme, act in SHOTS:

@@ -36,4 +36,20 @@ def test_the_benchmark_writes_its_numbers_and_its_table(domain, tmp_path):
         (row,) = [line for line in lines if line.startswith(f'| {name} c')]
         assert f'**{found[f"{part} rate"]:.3g}**' in row
     # A frame takes 300 ms to draw, and the state that it shows was there before.
-    assert found['stall lag'] > 300
+    assert min(found['stall first half'], found['stall second half']) > 300
+    # Two processes start and discover each other; on a busy machine that takes longer than the 5 s that are wanted.
+    assert 0.1 < found['start first frame'] < 60
+    for key, begin in (
+        ('start first frame', "| from the node's start"),
+        (
+            'stall first half',
+            '| a page that stalls 300 ms a frame, at 30 circles: largest lag in the first 1 s',
+        ),
+        (
+            'stall second half',
+            '| a page that stalls 300 ms a frame, at 30 circles: largest lag in the next 1 s',
+        ),
+    ):
+        (row,) = [line for line in lines if line.startswith(begin)]
+        shown = float(row.split('**')[1].replace(',', ''))
+        assert shown == pytest.approx(found[key], rel=0.01)

@@ -20,6 +20,8 @@ def address_of(viewer):
     while not (found := re.search(r'http://127\.0\.0\.1:\d+', viewer.log)):
         assert viewer.process.poll() is None, viewer.log
         assert time.monotonic() < deadline, f'no address within {PATIENCE} s: {viewer.log}'
+        # Without a pause this would take a core from what starts.
+        time.sleep(0.02)
     return found[0]
 
 
