@@ -38,6 +38,7 @@ class Frames:
         self.number = 0
         self.bodies: bytes | None = None
         self.static: bytes | None = None
+        self._stamp = 0  # ns, of the bodies
         self._times: OrderedDict[int, bytes] = OrderedDict()
 
     def see_time(self, message: bytes) -> None:
@@ -48,13 +49,14 @@ class Frames:
 
     def see_bodies(self, message: bytes) -> None:
         """Take note of the state at a tick."""
+        self._stamp = stamp_of(message)
         self.bodies = message
         self.number += 1
 
     def bodies_frame(self) -> bytes:
         """Return the newest state, behind the scene time of the same stamp if that has come."""
         assert self.bodies is not None
-        time = self._times.get(stamp_of(self.bodies), b'')
+        time = self._times.get(self._stamp, b'')
         padding = bytes(-len(time) % 4)
         return b''.join((HEAD.pack(BODIES, self.number, len(time)), time, padding, self.bodies))
 

@@ -18,8 +18,19 @@ LITTLE_ENDIAN = 1  # the second byte of that header
 
 
 def stamp_of(message: bytes) -> int:
-    """Return the stamp of any serialized message that begins with a std_msgs/Header, ns."""
-    seconds, nanoseconds = struct.unpack_from('<iI', message, HEADER)
+    """
+    Return the stamp of any serialized message that begins with a std_msgs/Header, ns.
+
+    Raises
+    ------
+    ValueError
+        For bytes that end before it does.
+
+    """
+    try:
+        seconds, nanoseconds = struct.unpack_from('<iI', message, HEADER)
+    except struct.error as error:
+        raise ValueError(f'stamp: not readable: {error}') from error
     return int(seconds) * 10**9 + int(nanoseconds)
 
 

@@ -137,6 +137,15 @@ class Server:
 
     def hear(self, channel: str, message: Any) -> None:
         """Take note of what came on a channel of the RosLink, and hand it on."""
+        try:
+            self._take(channel, message)
+        except ValueError as error:
+            # Somebody else's message: once is enough, it comes sixty times a second.
+            if channel not in self._unreadable:
+                self._link.log(f'{channel}: cannot be read: {error}')
+            self._unreadable.add(channel)
+
+    def _take(self, channel: str, message: Any) -> None:
         frames = self._frames
         if channel == 'time':
             frames.see_time(message)
@@ -151,13 +160,7 @@ class Server:
             for client in self._clients:
                 client.wake()
         if channel in ('bodies', 'contacts'):
-            try:
-                self._tell_story(channel, message)
-            except ValueError as error:
-                # Somebody else's message: once is enough, it comes sixty times a second.
-                if channel not in self._unreadable:
-                    self._link.log(f'{channel}: cannot be read: {error}')
-                self._unreadable.add(channel)
+            self._tell_story(channel, message)
 
     def _tell_story(self, channel: str, message: bytes) -> None:
         circles = {client.circle for client in self._clients} - {-1}

@@ -132,12 +132,16 @@ class Nowhere:
 
     def __init__(self):
         self.wanted = asyncio.Queue()
+        self.logged = []
 
     def want_contacts(self, wanted):
         self.wanted.put_nowait(wanted)
 
     def count_publishers(self):
         return 0
+
+    def log(self, text):
+        self.logged.append(text)
 
 
 def test_what_came_before_nobody_had_a_circle_selected_is_no_before():
@@ -165,3 +169,21 @@ def test_what_came_before_nobody_had_a_circle_selected_is_no_before():
 
     story = run(look())
     assert (story['before']['vx'], story['after']['vx']) == (2.0, 3.0)
+
+
+def test_what_ends_before_its_stamp_is_said_once_and_stops_no_page():
+    async def look():
+        server, link = Server(), Nowhere()
+        address, _ = await server.start(link)
+        try:
+            async with connected(address) as page:
+                for channel in ('time', 'bodies', 'bodies'):
+                    server.hear(channel, bodies(10, 1.0)[:9])
+                server.hear('bodies', bodies(20, 1.0))
+                return (await page.frame())[-1], link.logged
+        finally:
+            await server.stop()
+
+    message, logged = run(look())
+    assert stamp_of(message) == 20
+    assert [text.partition(':')[0] for text in logged] == ['time', 'bodies']
