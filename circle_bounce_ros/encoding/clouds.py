@@ -17,8 +17,9 @@ from circle_bounce_ros.encoding.layout import FLOAT32, FLOAT64, UINT8, UINT32, L
 from circle_bounce_ros.encoding.stamps import put_header, split
 from circle_bounce_ros.kernel import CONTACT
 
-# The numbers that sensor_msgs/PointField has for them.
-DATATYPES = {UINT8: 2, UINT32: 6, FLOAT32: 7, FLOAT64: 8}
+# The numbers that sensor_msgs/PointField has for them, from 1 on.
+KINDS = ('i1', 'u1', '<i2', '<u2', '<i4', '<u4', '<f4', '<f8')
+DATATYPES = {np.dtype(kind): number for number, kind in enumerate(KINDS, start=1)}
 
 BODY = np.dtype(
     [(name, FLOAT32) for name in ('x', 'y', 'z', 'vx', 'vy', 'radius')] + [('id', UINT32)]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
+from circle_bounce_ros.encoding.clouds import DATATYPES
 from circle_bounce_ros.encoding.stamps import SECOND
 from circle_bounce_ros.encoding.topics import BODIES, CONTACTS, STATIC_MARKERS, TIME
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, SceneError, Wall
@@ -19,8 +20,7 @@ from circle_bounce_ros.offline.recording import SCENE_FILE
 from circle_bounce_ros.offline.source import Frame, Source, SourceError, thinned
 from circle_bounce_ros.scene_file import load_scene
 
-# What sensor_msgs/PointField calls them.
-DATATYPES = {1: 'i1', 2: 'u1', 3: 'i2', 4: 'u2', 5: 'i4', 6: 'u4', 7: 'f4', 8: 'f8'}
+DTYPES = {number: dtype for dtype, number in DATATYPES.items()}
 
 # What visualization_msgs/Marker calls them.
 CYLINDER, LINE_LIST, SPHERE_LIST = 3, 5, 7
@@ -105,7 +105,8 @@ def of_bag(folder: Path, duration: float, rate: float, namespace: str | None = N
         )
     types = _types_in(folder)
     bag = Bag(folder, _namespace_in(folder, types, namespace))
-    scene, collide, masses_known = _scene_of(bag)
+    contacts_known = bag.namespace + CONTACTS.name in types
+    scene, collide, masses_known = _scene_of(bag, contacts_known)
 
     def frames() -> Iterator[Frame]:
         return thinned(_frames(bag, duration), rate)
@@ -117,7 +118,7 @@ def of_bag(folder: Path, duration: float, rate: float, namespace: str | None = N
         digits=float(np.finfo(np.float32).eps),
         collide=collide,
         masses_known=masses_known,
-        contacts_known=bag.namespace + CONTACTS.name in types,
+        contacts_known=contacts_known,
     )
 
 
@@ -151,18 +152,32 @@ def _namespace_in(folder: Path, types: dict[str, str], wanted: str | None) -> st
     return found[0]
 
 
-def points_of(cloud: Any) -> NDArray[np.void]:
-    """Return a PointCloud2 as a structured array, by its own description of its fields."""
-    order = '>' if cloud.is_bigendian else '<'
-    point = np.dtype(
-        {
-            'names': [field.name for field in cloud.fields],
-            'formats': [order + DATATYPES[field.datatype] for field in cloud.fields],
-            'offsets': [field.offset for field in cloud.fields],
-            'itemsize': cloud.point_step,
-        }
-    )
-    return np.frombuffer(cloud.data.tobytes(), point)
+def points_of(bag: Bag, topic: str, cloud: Any) -> NDArray[np.void]:
+    """
+    Return a PointCloud2 as a structured array, by its own description of its fields.
+
+    Raises
+    ------
+    SourceError
+        For a description that describes nothing.
+
+    """
+    order: Literal['<', '>'] = '>' if cloud.is_bigendian else '<'
+    try:
+        point = np.dtype(
+            {
+                'names': [field.name for field in cloud.fields],
+                'formats': [DTYPES[field.datatype].newbyteorder(order) for field in cloud.fields],
+                'offsets': [field.offset for field in cloud.fields],
+                'itemsize': cloud.point_step,
+            }
+        )
+        return np.frombuffer(cloud.data.tobytes(), point)
+    except KeyError as error:
+        problem = f'datatype: must be from 1 to {len(DTYPES)}, got {error}'
+    except ValueError as error:
+        problem = f'its fields do not describe its data: {error}'
+    raise SourceError(f'{bag.folder}: {bag.namespace}{topic}: {problem}')
 
 
 def _nanoseconds(time: Any) -> int:
@@ -238,7 +253,7 @@ def _ticks(bag: Bag, timeline: _Timeline) -> Iterator[tuple[Any, list[NDArray[np
 
 
 def _points_of_bodies(bag: Bag, cloud: Any) -> NDArray[np.void]:
-    points = points_of(cloud)
+    points = points_of(bag, BODIES.name, cloud)
     missing = [name for name in FIELDS if name not in (points.dtype.names or ())]
     if missing:
         raise SourceError(
@@ -249,7 +264,7 @@ def _points_of_bodies(bag: Bag, cloud: Any) -> NDArray[np.void]:
 
 
 def _points_of_contacts(bag: Bag, cloud: Any) -> NDArray[np.void]:
-    points = points_of(cloud)
+    points = points_of(bag, CONTACTS.name, cloud)
     contacts = np.zeros(len(points), NO_CONTACTS.dtype)
     for name in NO_CONTACTS.dtype.names or ():
         if name not in (points.dtype.names or ()):
@@ -260,7 +275,7 @@ def _points_of_contacts(bag: Bag, cloud: Any) -> NDArray[np.void]:
     return contacts
 
 
-def _scene_of(bag: Bag) -> tuple[Scene, bool, bool]:
+def _scene_of(bag: Bag, contacts_known: bool) -> tuple[Scene, bool, bool]:
     """Return the scene of a bag, whether its moving circles hit each other, and whether masses are known."""
     if (bag.folder / SCENE_FILE).exists():
         scene = load_scene(bag.folder / SCENE_FILE)
@@ -276,7 +291,7 @@ def _scene_of(bag: Bag) -> tuple[Scene, bool, bool]:
         scene = Scene([*circles, *locked], walls, moving_circles_collide=False)
     except SceneError as error:
         raise SourceError(f'{bag.folder}: {error}') from None
-    return scene, _has_pairs(bag), False
+    return scene, not contacts_known or _has_pairs(bag), False
 
 
 def _what_stands_still(bag: Bag) -> tuple[list[Wall], list[Circle]]:

@@ -59,7 +59,7 @@ class Source:
     digits : float
         Relative error of one number in a frame.
     collide : bool
-        Whether moving circles hit each other.
+        Whether moving circles hit each other, as far as is known.
     masses_known : bool
     contacts_known : bool
         Without them, those of a frame are always none.

@@ -13,6 +13,7 @@ from rosbags.typesys import Stores, get_typestore
 from circle_bounce_ros.kernel import ContactKind, Simulation
 from circle_bounce_ros.offline import plot, record
 from circle_bounce_ros.offline.bag_source import of_bag
+from circle_bounce_ros.offline.pictures.speeds import speeds
 from circle_bounce_ros.offline.source import SourceError
 from circle_bounce_ros.scene_file import load_scene
 
@@ -129,6 +130,8 @@ def test_contacts_that_were_not_recorded_are_not_counted_as_none(tmp_path, capsy
         assert 'contacts' not in numbers_of_picture(path)
     assert plot.main(['free_path', str(folder), '-o', str(tmp_path / 'path.png')]) == 1
     assert 'must have contacts, got none, as their topic is not in it' in capsys.readouterr().err
+    figure, _ = speeds(of_bag(folder, 9.0, 9.0))
+    assert 'not for these' not in ' '.join(text.get_text() for text in figure.axes[0].texts)
 
 
 def test_a_bag_may_begin_in_the_middle(tmp_path, gas_bag):
@@ -202,20 +205,49 @@ def test_another_scene_in_the_middle_is_said_with_its_time(tmp_path, gas_bag):
     assert len(list(of_bag(both, 2.9, 1000.0).frames())) == 2.9 * RATE + 1
 
 
-def test_topics_of_these_names_that_are_something_else_are_said(tmp_path):
+def write_cloud(folder, fields, step, data, is_bigendian=False):
+    """Write a bag of one message on `bodies`, with fields of name, offset and datatype, and return it."""
     types = get_typestore(Stores.ROS2_JAZZY)
     kind = types.types['sensor_msgs/msg/PointCloud2']
     header = types.types['std_msgs/msg/Header'](
         stamp=types.types['builtin_interfaces/msg/Time'](sec=1, nanosec=0), frame_id='lidar'
     )
-    field = types.types['sensor_msgs/msg/PointField'](name='x', offset=0, datatype=7, count=1)
-    cloud = kind(header, 1, 1, [field], False, 4, 4, np.zeros(4, np.uint8), True)
-    folder = tmp_path / 'lidar'
+    field = types.types['sensor_msgs/msg/PointField']
+    fields = [field(name, offset, datatype, count=1) for name, offset, datatype in fields]
+    values = np.frombuffer(data, np.uint8)
+    cloud = kind(header, 1, 1, fields, is_bigendian, step, len(data), values, True)
     with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         to = writer.add_connection('/bodies', kind.__msgtype__, typestore=types)
         writer.write(to, SECOND, types.serialize_cdr(cloud, kind.__msgtype__))
-    with pytest.raises(SourceError, match=r'/bodies: must have the fields x, .*, lacks y, vx'):
+    return folder
+
+
+@pytest.mark.parametrize(
+    ('datatype', 'step', 'reason'),
+    [
+        (7, 4, 'must have the fields x, .*, lacks y, vx'),
+        (9, 4, 'datatype: must be from 1 to 8, got 9'),
+        (0, 4, 'datatype: must be from 1 to 8, got 0'),
+        (8, 4, 'its fields do not describe its data: '),
+        (7, 5, 'its fields do not describe its data: '),
+    ],
+)
+def test_topics_of_these_names_that_are_something_else_are_said(tmp_path, datatype, step, reason):
+    folder = write_cloud(tmp_path / 'lidar', [('x', 0, datatype)], step, bytes(4))
+    with pytest.raises(SourceError, match=f'{folder}: /bodies: {reason}'):
         of_bag(folder, 9.0, 9.0)
+
+
+@pytest.mark.parametrize('order', ['<', '>'])
+def test_numbers_of_every_kind_are_read(tmp_path, order):
+    # As sensor_msgs/PointField numbers them: INT8 1, UINT8 2, INT16 3, ... FLOAT64 8.
+    names = ['radius', 'u', 'x', 'v', 'y', 'id', 'vx', 'vy']
+    data = struct.pack(f'{order}bBhHiIfd', 1, 200, -3, 60000, -70000, 7, 0.5, 0.1)
+    offsets = [0, 1, 2, 4, 6, 10, 14, 18]
+    fields = list(zip(names, offsets, range(1, 9), strict=True))
+    (frame,) = frames_of(write_cloud(tmp_path / 'kinds', fields, 26, data, order == '>'))
+    assert frame.positions.tolist() == [[-3.0, -70000.0]]
+    assert frame.velocities.tolist() == [[0.5, 0.1]]
 
 
 @pytest.mark.parametrize('storage', [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
