@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from pyarrow import parquet
+from pyarrow import ArrowException, parquet
 
 from circle_bounce_ros.kernel import EndlessContactsError, SceneError
 from circle_bounce_ros.offline.bag_source import of_bag
@@ -124,7 +124,7 @@ def draw(chosen: argparse.Namespace, path: Path) -> dict[str, float]:
     begun = path.with_name(f'.{path.name}{path.suffix}')
     try:
         if chosen.picture == PRESSURE:
-            numbers = finish(draw_pressure(Path(chosen.source)), begun)
+            numbers = finish(draw_pressure(chosen), begun)
         elif chosen.picture == ANIMATION:
             numbers = animate(open_source(chosen), begun)
         else:
@@ -171,12 +171,22 @@ def finish(picture: Picture, path: Path) -> dict[str, float]:
     return numbers
 
 
-def draw_pressure(folder: Path) -> Picture:
+def draw_pressure(chosen: argparse.Namespace) -> Picture:
     """Draw the pressure of all runs of a sweep, each of whose parameters has all seeds."""
+    for option in ('duration', 'rate', 'seed', 'namespace'):
+        if getattr(chosen, option) is not None:
+            raise SourceError(f'{option}: does not go with a sweep')
+    folder = Path(chosen.source)
     path = folder / SUMMARY
     if not path.exists():
         raise SourceError(f'{folder}: must be the folder of a sweep with its {SUMMARY}')
-    table = parquet.read_table(path)
+    try:
+        table = parquet.read_table(path)
+    except (ArrowException, OSError) as error:
+        raise SourceError(f'{path}: cannot be read: {error}') from None
+    missing = [name for name in ('packing', 'compressibility') if name not in table.column_names]
+    if missing:
+        raise SourceError(f'{path}: must be from a sweep, lacks the column {", ".join(missing)}')
     parameters = [field.name for field in table.schema if is_parameter(field)]
     settings: dict[str, list[tuple[float, float]]] = {}
     for row in table.to_pylist():

@@ -6,11 +6,13 @@ import math
 import signal
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from conftest import files_of
 from PIL import Image
+from pyarrow import parquet
 
-from circle_bounce_ros.kernel import Circle, Scene, Simulation, Wall
+from circle_bounce_ros.kernel import Circle, ContactKind, Scene, Simulation, Wall
 from circle_bounce_ros.offline import record
 from circle_bounce_ros.offline.bag_source import of_bag
 from circle_bounce_ros.offline.expected import billiard_of
@@ -177,6 +179,25 @@ def test_a_gas_has_the_free_path_and_rate_of_enskog(draw):
     assert numbers['contact rate'] == pytest.approx(numbers['theory rate'], rel=0.015)
 
 
+def test_bars_of_the_contact_rate_are_those_of_independent_contacts():
+    """Where walls and pairs are counted together: var(sum of ends) = sum of ends^2 over contacts."""
+    scene = load_scene('mixed')
+    figure, _ = free_path(of_scene(scene, 4.0, 10.0))
+    bars = figure.axes[1].containers[0][2][0].get_segments()
+    simulation = Simulation(scene, record_contacts=True)
+    kinds = set()
+    for k, bar in enumerate(bars, start=1):
+        simulation.advance_to(k * 4.0 / len(bars))
+        contacts = simulation.drain_contacts()['kind']
+        ends = np.where(contacts == ContactKind.CIRCLE, 2.0, 1.0)
+        circle_time = len(simulation.ids) * 4.0 / len(bars)
+        middle, half = ends.sum() / circle_time, math.sqrt((ends**2).sum()) / circle_time
+        assert bar[:, 1] == pytest.approx([middle - half, middle + half])
+        kinds |= set(contacts)
+    assert len(bars) == 20
+    assert len(kinds) > 1
+
+
 def test_a_billiard_has_the_free_path_pi_a_by_p(draw):
     numbers = draw('free_path', 'billiard', '--duration', 2000, '--rate', 1)
     area = 1.9**2 - math.pi * 0.45**2
@@ -225,6 +246,10 @@ def test_the_closed_form_is_for_billiards_in_which_nothing_is_out_of_reach():
         (['animation', 'lesson', '-o', 'a.png'], 'output: must end in .gif, got a.png'),
         (['energy', '.', '-o', 'a.png'], 'has no metadata.yaml'),
         (['pressure', '.', '-o', 'a.png'], 'must be the folder of a sweep'),
+        (['pressure', '.', '-o', 'a.png', '--seed', '1'], 'seed: does not go with a sweep'),
+        (['pressure', '.', '-o', 'a.png', '--duration', '1'], 'duration: does not go with'),
+        (['pressure', '.', '-o', 'a.png', '--rate', '1'], 'rate: does not go with a sweep'),
+        (['pressure', '.', '-o', 'a.png', '--namespace', 'a'], 'namespace: does not go with'),
         (['energy', 'lesson', '--duration', '-1', '-o', 'a.png'], 'duration: must be > 0'),
         (['energy', 'lesson', '--duration', '0', '-o', 'a.png'], 'duration: must be > 0'),
         (['energy', 'lesson', '--namespace', 'a', '-o', 'a.png'], 'goes with a bag only'),
@@ -237,6 +262,26 @@ def test_what_is_wrong_is_said_and_leaves_nothing(
     assert main(arguments) == 1
     assert reason in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ('write', 'reason'),
+    [
+        (lambda path: path.write_bytes(b'PAR1 no table'), 'cannot be read: '),
+        (
+            lambda path: parquet.write_table(pa.table({'packing': [0.1]}), path),
+            'must be from a sweep, lacks the column compressibility',
+        ),
+    ],
+)
+def test_a_summary_that_is_none_is_said_in_one_sentence(tmp_path, capsys, write, reason):
+    path = tmp_path / 'summary.parquet'
+    write(path)
+    assert main(['pressure', str(tmp_path), '-o', str(tmp_path / 'a.png')]) == 1
+    error = capsys.readouterr().err
+    assert f'bounce_plot: {path}: {reason}' in error
+    assert len(error.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_ctrl_c_ends_it_without_a_picture_and_without_a_word(tmp_path, capsys):

@@ -31,6 +31,8 @@ class Counts(NamedTuple):
         Its middle.
     ends : (b,) float
         Circles' contacts: two of each pair of moving ones.
+    pairs : (b,) float
+        Contacts of two moving circles.
     circle_time : (b,) float, s
         Time times circles.
     way : (b,) float, m
@@ -43,6 +45,7 @@ class Counts(NamedTuple):
 
     time: NDArray[np.float64]
     ends: NDArray[np.float64]
+    pairs: NDArray[np.float64]
     circle_time: NDArray[np.float64]
     way: NDArray[np.float64]
     packing: float
@@ -64,8 +67,8 @@ def free_path(source: Source) -> Picture:
         if window
         else expected.of_billiard(source.scene, source.collide)
     )
-    # Pairs come with both ends at once: as many independent counts as pairs.
-    error = np.sqrt((2.0 if window else 1.0) / np.maximum(counts.ends, 1.0))
+    # Each contact is a count of its own, of variance 1; that of a pair is counted twice, which makes it 4.
+    error = np.sqrt(counts.ends + 2.0 * counts.pairs) / np.maximum(counts.ends, 1.0)
     seen = counts.ends > 0.0
     time, error = counts.time[seen], error[seen]
     path = counts.way[seen] / counts.ends[seen]
@@ -82,7 +85,7 @@ def free_path(source: Source) -> Picture:
 
 def count(source: Source, window: Window | None) -> Counts:
     """Count contacts and ways of all circles, or of those in a window."""
-    times, ends, inside, ways = [], [], [], []
+    times, ends, pairs, inside, ways = [], [], [], [], []
     for frame in source.frames():
         held = (
             window.holds(frame.positions[:, 0], frame.positions[:, 1])
@@ -97,6 +100,7 @@ def count(source: Source, window: Window | None) -> Counts:
         inside.append(int(held.sum()))
         ways.append(float(np.hypot(*frame.velocities.T)[held].sum()))
         ends.append(ends_of(contacts['kind']))
+        pairs.append(ends[-1] - len(contacts))
     if len(times) < 2 or not sum(ends[1:]):
         why = '' if source.contacts_known else ', as their topic is not in it'
         raise SourceError(f'{source.name}: must have contacts, got none{why}')
@@ -115,6 +119,7 @@ def count(source: Source, window: Window | None) -> Counts:
     return Counts(
         np.array([time[part].mean() for part in parts]),
         summed(ends, False),
+        summed(pairs, False),
         summed(inside, True),
         summed(ways, True),
         packing,
