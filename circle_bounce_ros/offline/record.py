@@ -57,7 +57,8 @@ def arguments_of(arguments: Sequence[str] | None) -> argparse.Namespace:
     chosen = parser.parse_args(arguments)
     if chosen.repair is None and (chosen.scene is None or chosen.output is None):
         parser.error('SCENE and --output are needed (or --repair FOLDER)')
-    if chosen.repair is not None and (chosen.scene or chosen.output):
+    others = [name for name in vars(chosen) if name != 'repair']
+    if chosen.repair and any(getattr(chosen, n) != parser.get_default(n) for n in others):
         parser.error('--repair goes with nothing else')
     return chosen
 
@@ -84,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f'{COMMAND}: {error.filename or ""}: {error.strerror}', file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        # In a repair, which leaves everything as it was; a recording takes note of it itself.
+        # In a repair, which leaves everything as it was, or the second one in a recording, which has said so.
         return INTERRUPTED
 
 
@@ -105,8 +106,8 @@ def record(chosen: argparse.Namespace) -> int:
     last: Moment | None = None
     with Stopping() as stop, Progress(ticks, len(scene.circles)) as bar:
         sink = make_sink(folder, scene, chosen, topics)
-        simulation = Simulation(scene, record_contacts=sink.wants_contacts)
         try:
+            simulation = Simulation(scene, record_contacts=sink.wants_contacts)
             for last in moments(simulation, ticks, stop):
                 sink.write(last)
                 bar.show(last.stamp_ns)
@@ -114,6 +115,10 @@ def record(chosen: argparse.Namespace) -> int:
         except (OSError, EndlessContactsError) as error:
             sink.abort()
             raise RecordError(broken(folder, error, last, chosen.format)) from error
+        except KeyboardInterrupt as error:
+            sink.abort()
+            print(f'{COMMAND}: {broken(folder, error, last, chosen.format)}', file=sys.stderr)
+            raise
         except BaseException:
             sink.abort()
             raise
@@ -148,9 +153,9 @@ def make_sink(
     return Bag(folder, scene, chosen.frame_id, topics, chosen.compress)
 
 
-def broken(folder: Path, error: Exception, last: Moment | None, form: str) -> str:
+def broken(folder: Path, error: BaseException, last: Moment | None, form: str) -> str:
     """Return what went wrong in the middle, and what is left."""
-    reason = error.strerror if isinstance(error, OSError) else str(error)
+    reason = error.strerror if isinstance(error, OSError) else str(error) or 'interrupted'
     at = f'{last.stamp_ns / SECOND:.9g} s' if last else 'the beginning'
     left = (
         'the parts that were written are whole'

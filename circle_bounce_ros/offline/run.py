@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import uuid
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -75,8 +76,11 @@ def perform(folder: str, digest: str, number: int) -> dict[str, Any]:
         run = plan.run(number)
         place = place_of(Path(folder), number)
         if (place / ROW).exists():
-            row: dict[str, Any] = json.loads((place / ROW).read_text())
-            return row
+            with suppress(ValueError):
+                row: dict[str, Any] = json.loads((place / ROW).read_text())
+                return row
+            # What cannot be read is done again.
+            shutil.rmtree(place)
         return _perform(plan, run, place)
     except Exception as error:
         about = {'seed': run.seed, **run.parameters} if run else {}

@@ -20,7 +20,7 @@ from tqdm import tqdm
 
 from circle_bounce_ros.offline.plan import Plan, PlanError, load_plan
 from circle_bounce_ros.offline.run import PLAN, RUNS, perform, remove_unfinished
-from circle_bounce_ros.offline.stopping import Stopping, without_interrupts
+from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping, without_interrupts
 from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, replace, write_summary
 
 COMMAND = 'bounce_sweep'
@@ -82,6 +82,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f'{COMMAND}: {error.filename or ""}: {error.strerror or error}', file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        # The second one: the first is only noted.
+        print(f'{COMMAND}: interrupted, what is done is kept: start it again', file=sys.stderr)
+        return INTERRUPTED
 
 
 @contextmanager

@@ -6,6 +6,7 @@ import fcntl
 import json
 import os
 import pty
+import signal
 import struct
 import subprocess
 import sys
@@ -46,6 +47,12 @@ class Terminal:
 
     def press_ctrl_c(self):
         os.write(self._ours, b'\x03')
+
+    def wants_to_end(self):
+        """Return whether a first signal has been noted, after which no handler waits for SIGTERM."""
+        status = Path(f'/proc/{self._process.pid}/status').read_text()
+        caught = int(status.partition('SigCgt:')[2].split()[0], 16)
+        return not caught & 1 << signal.SIGTERM - 1
 
     def end(self):
         """Wait for the end and return the exit status and all that was shown."""

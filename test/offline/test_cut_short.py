@@ -33,6 +33,31 @@ def test_after_ctrl_c_or_a_kill_the_bag_is_whole_up_to_where_it_came(tmp_path, b
     assert_is_a_beginning(folder)
 
 
+def test_a_second_ctrl_c_ends_it_at_once_and_says_how_to_go_on(tmp_path, capsys):
+    folder = tmp_path / 'bag'
+
+    def interrupt(number, frame):
+        if size(folder) > 3e6:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.default_int_handler(number, frame)
+
+    # Of another number than the first one, which would only be noted.
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)
+    try:
+        status = main([str(argument) for argument in [*LONG, '-o', folder]])
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert status == 128 + signal.SIGINT
+    error = capsys.readouterr().err
+    assert f'bounce_record: {folder}: interrupted, at ' in error
+    assert f'bounce_record --repair {folder}' in error
+    assert len(error.splitlines()) == 1
+    assert main(['--repair', str(folder)]) == 0
+    assert_is_a_beginning(folder)
+
+
 def assert_is_a_beginning(folder):
     """Check that a bag holds every message from the first tick on, by both readers."""
     by_rosbags = sorted((topic, time) for topic, time, _ in read_with_rosbags(folder))

@@ -51,6 +51,16 @@ def test_what_is_wrong_is_said_and_leaves_nothing(tmp_path, capsys, arguments, r
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    'others', [['lesson'], ['-o', 'out'], ['--duration', '5'], ['--compress'], ['--topics', 'a']]
+)
+def test_a_repair_with_other_options_is_refused(tmp_path, capsys, others):
+    with pytest.raises(SystemExit) as caught:
+        main(['--repair', str(tmp_path), *others])
+    assert caught.value.code == 2
+    assert '--repair goes with nothing else' in capsys.readouterr().err
+
+
 def test_a_recording_takes_the_same_memory_however_long_it_is(tmp_path, bounce):
     script = (
         'import resource, sys\n'

@@ -188,6 +188,32 @@ def test_after_ctrl_c_on_a_terminal_it_says_what_is_missing_and_goes_on_later(
     assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
 
 
+def test_a_second_ctrl_c_on_a_terminal_ends_it_without_a_traceback(tmp_path, bounce, write_sweep):
+    sweep = write_sweep(seeds={'first': 0, 'count': 40}, duration=10.0)
+    folder = tmp_path / 'out'
+    log = folder / 'rows.jsonl'
+    with Terminal('bounce_sweep', sweep, '-o', folder, '--workers', 1) as terminal:
+        wait_until(lambda: log.exists() and log.read_text(), 'a run')
+        terminal.press_ctrl_c()
+        wait_until(terminal.wants_to_end, 'the first one to be noted')
+        terminal.press_ctrl_c()
+        status, shown = terminal.end()
+    assert status == 128 + signal.SIGINT
+    assert 'Traceback' not in shown
+    assert 'bounce_sweep: interrupted, what is done is kept: start it again' in shown
+    assert '120 of 120 runs done' in bounce.run('bounce_sweep', sweep, '-o', folder)
+
+
+def test_a_row_that_cannot_be_read_is_done_again(tmp_path, write_sweep):
+    sweep = write_sweep(record='bag')
+    rows = perform_here(sweep, tmp_path / 'here')
+    before = files_of(tmp_path / 'here')
+    (tmp_path / 'here/runs/000000/000000003/row.json').write_text('')
+    plan = load_plan(sweep)
+    assert perform(str(tmp_path / 'here'), plan.digest(), 3) == rows[3]
+    assert files_of(tmp_path / 'here') == before
+
+
 def has_a_run_in_its_hands(folder):
     return bool(list(folder.glob('runs/*/.*')))
 
