@@ -1,7 +1,7 @@
 """
 A run of 10^9 contacts: how far the energy goes astray. `python -m benchmarks.long_run [CONTACTS]`.
 
-It takes about ten minutes of one core, so it has its own command: `make bench-long`.
+It takes about six minutes of one core, so it has its own command: `make bench-long`.
 """
 
 from __future__ import annotations

@@ -29,8 +29,8 @@ HEAD = """\
 
 How fast the engine and the node are, and how right, beside what people would use instead. Repeat it with
 
-    make bench         # 20 minutes: everything below but the two long runs
-    make bench-long    # 10 minutes: 10^9 contacts
+    make bench         # 10 minutes: everything below but the two long runs
+    make bench-long    # 6 minutes: 10^9 contacts
     make bench-soak    # 10 minutes: memory of the node
 
 What is compared takes turns in one run on the same scenes; what counts is CPU time. Numbers are medians over the

@@ -31,6 +31,7 @@ from benchmarks import machine, results
 from benchmarks.wording import measured_on, number
 from circle_bounce_ros.kernel import compile_ahead
 from circle_bounce_ros.viewer.cloud import stamp_of
+from tools.run import PROGRAMS
 
 DOCUMENT = results.FOLDER.parent / 'viewer.md'
 BEGIN = '<!-- made by `make bench-viewer` -->\n'
@@ -294,6 +295,8 @@ def main() -> None:
     # Else a node that runs already would be heard.
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+    # As `make run` starts the node.
+    os.environ.update({**PROGRAMS['bounce_node'], **os.environ})
     compile_ahead()
     print(f'load before: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores', flush=True)
     described = machine.describe()
