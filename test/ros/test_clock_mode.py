@@ -71,13 +71,15 @@ def test_a_hundred_resets_under_load_succeed_and_every_stamp_is_one_period_later
     ]
     start(scene=path, publish_clock='true', rate=50.0)
     observer.spin_until(lambda: times and clock and all(load), 'all topics')
-    responses = [observer.reset() for _ in range(100)]
+    responses = []
+    for _ in range(10):  # on a fast machine all hundred would come between two ticks
+        responses += [observer.reset() for _ in range(10)]
+        observer.collect(times, 5)
     assert [response.success for response in responses] == [True] * 100
-    observer.collect(times, 10)
     period = SECOND // 50
     assert {b - a for a, b in pairwise(stamps(times))} == {period}
     assert {b - a for a, b in pairwise(clock_times(clock))} == {period}
-    assert scene_ns(times).count(0) > 3
+    assert scene_ns(times).count(0) >= 10
     for before, after in pairwise(scene_ns(times)):
         assert after in (0, before + period)
 
