@@ -42,7 +42,7 @@ def test_the_picture_is_told_in_words(lesson_page):
 
 @pytest.mark.parametrize('scheme', ['dark', 'light'])
 def test_words_stand_out_from_their_background(show, scheme):
-    page = show(color_scheme=scheme)
+    page = show(color_scheme=scheme, reduced_motion='reduce')  # no colour is on its way to another
     page.evaluate('bounce.selectNext(1)')
     wait_until(page, "!document.getElementById('lesson').hidden")
     pairs = page.evaluate(
@@ -67,6 +67,7 @@ def contrast(*colours):
     """Return the contrast of two CSS colours, by WCAG 2.1."""
     light = []
     for colour in colours:
+        assert colour.startswith(('rgb', 'color(srgb')), colour
         numbers = colour[colour.index('(') + 1 : -1].replace('srgb', '').split('/')[0]
         values = [float(part) for part in numbers.replace(',', ' ').split()[:3]]
         values = [value / 255 if colour.startswith('rgb') else value for value in values]
