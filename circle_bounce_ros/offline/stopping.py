@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,11 +19,19 @@ class Stopping:
     A context in which the first signal is only noted. A second one ends the program in the usual way.
 
     Calling it tells whether one has come.
+
+    Parameters
+    ----------
+    last_words : str, optional
+        With them a second Ctrl-C ends the program at once, after it has said them. For programs full of objects that
+        Python may be about to delete: of an exception that comes up there it shows a traceback, and goes on.
+
     """
 
     SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
-    def __init__(self) -> None:
+    def __init__(self, last_words: str = '') -> None:
+        self._last_words = last_words
         self._came: int | None = None
         self._before: dict[int, Any] = {}
 
@@ -48,7 +57,15 @@ class Stopping:
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         self._came = number
-        self._restore()
+        if self._last_words:
+            signal.signal(signal.SIGINT, self._leave)
+            signal.signal(signal.SIGTERM, self._before[signal.SIGTERM])
+        else:
+            self._restore()
+
+    def _leave(self, number: int, frame: FrameType | None) -> None:
+        os.write(2, f'\n{self._last_words}\n'.encode())
+        os._exit(128 + number)
 
     def _restore(self) -> None:
         for number, handler in self._before.items():

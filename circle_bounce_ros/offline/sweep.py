@@ -24,6 +24,7 @@ from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping, without_in
 from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, replace, write_summary
 
 COMMAND = 'bounce_sweep'
+LAST_WORDS = f'{COMMAND}: interrupted, what is done is kept: start it again'
 LOCK = '.lock'
 
 # Runs that wait at the scheduler for each thread of a worker: it never holds the whole sweep.
@@ -73,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = arguments_of(arguments)
     try:
         plan = load_plan(chosen.sweep)
-        with locked(chosen.output, plan), Stopping() as stop:
+        with locked(chosen.output, plan), Stopping(LAST_WORDS) as stop:
             failed = sweep(plan, chosen, stop)
         return stop.exit_status or int(failed > 0)
     except (SweepError, PlanError) as error:
@@ -83,8 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f'{COMMAND}: {error.filename or ""}: {error.strerror or error}', file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        # The second one: the first is only noted.
-        print(f'{COMMAND}: interrupted, what is done is kept: start it again', file=sys.stderr)
+        print(LAST_WORDS, file=sys.stderr)
         return INTERRUPTED
 
 
