@@ -5,20 +5,12 @@ from __future__ import annotations
 from operator import index
 
 from circle_bounce_ros.encoding.layout import UINT32, Layout, Slot
-
-SECOND = 10**9  # ns
-END_OF_TIME = 2**31 * SECOND  # seconds are int32
-SECONDS_PER_NS = 1e-9
-
-
-def kernel_time(scene_ns: int) -> float:
-    """Return the time that the kernel is asked for at a scene time, s."""
-    return scene_ns * SECONDS_PER_NS
+from circle_bounce_ros.schedule.times import LAST_INSTANT, SECOND
 
 
 def put_time(layout: Layout) -> Slot:
     """Append a Time; its slot takes what `split` gives."""
-    # Both halves as uint32, although seconds are int32: below END_OF_TIME the bits are the same.
+    # Both halves as uint32, although seconds are int32: up to LAST_INSTANT the bits are the same.
     return layout.put(UINT32, (0, 0))
 
 
@@ -42,6 +34,6 @@ def split(time_ns: int, place: str = 'stamp') -> tuple[int, int]:
 
     """
     time_ns = index(time_ns)
-    if not 0 <= time_ns < END_OF_TIME:
-        raise ValueError(f'{place}: must be from 0 to below {END_OF_TIME} ns, got {time_ns}')
+    if not 0 <= time_ns <= LAST_INSTANT:
+        raise ValueError(f'{place}: must be from 0 to below {LAST_INSTANT + 1} ns, got {time_ns}')
     return divmod(time_ns, SECOND)

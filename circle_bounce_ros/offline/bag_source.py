@@ -12,13 +12,13 @@ from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
 from circle_bounce_ros.encoding.clouds import DATATYPES
-from circle_bounce_ros.encoding.stamps import SECOND
 from circle_bounce_ros.encoding.topics import BODIES, CONTACTS, STATIC_MARKERS, TIME
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, SceneError, Wall
 from circle_bounce_ros.offline.bag import METADATA
 from circle_bounce_ros.offline.recording import SCENE_FILE
 from circle_bounce_ros.offline.source import Frame, Source, SourceError, thinned
 from circle_bounce_ros.scene_file import load_scene
+from circle_bounce_ros.schedule.times import SECOND
 
 DTYPES = {number: dtype for dtype, number in DATATYPES.items()}
 

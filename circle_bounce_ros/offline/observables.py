@@ -19,9 +19,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.encoding.stamps import kernel_time
 from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import ContactKind, Scene, Simulation
+from circle_bounce_ros.schedule.times import kernel_time
 
 # How far the window keeps from the walls: radii, but no more than this part of the shorter side.
 MARGIN = 10.0

@@ -16,10 +16,10 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from circle_bounce_ros.encoding.stamps import kernel_time
 from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import Scene
 from circle_bounce_ros.offline.recording import write_scene
+from circle_bounce_ros.schedule.times import kernel_time
 
 # A part holds at most so many rows and so many ticks: what kill -9 may cost.
 ROWS_A_PART = 1 << 20

@@ -28,8 +28,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from circle_bounce_ros.kernel import Scene, SceneError
-from circle_bounce_ros.offline.ticks import Ticks
 from circle_bounce_ros.scene_file import build_scene, read_scene
+from circle_bounce_ros.schedule.recording import RecordingTicks
 
 RECORDS = ('none', 'bag', 'parquet')
 DEFAULTS: dict[str, Any] = {
@@ -127,9 +127,9 @@ class Plan:
             put(data, place, value)
         return build_scene(data, self.name, run.seed)
 
-    def ticks(self) -> Ticks:
+    def ticks(self) -> RecordingTicks:
         """Return the ticks of each run."""
-        return Ticks(self.rate, self.duration)
+        return RecordingTicks(self.rate, self.duration)
 
     def dump(self) -> str:
         """Return the plan as JSON, from which `restore` makes the same one."""

@@ -24,8 +24,8 @@ from circle_bounce_ros.offline.pictures.trajectories import trajectories
 from circle_bounce_ros.offline.source import Source, SourceError, of_scene
 from circle_bounce_ros.offline.stopping import INTERRUPTED
 from circle_bounce_ros.offline.summary import SUMMARY, is_parameter
-from circle_bounce_ros.offline.ticks import LARGEST_RATE
 from circle_bounce_ros.scene_file import load_scene
+from circle_bounce_ros.schedule.recording import LARGEST_RATE
 
 COMMAND = 'bounce_plot'
 ANIMATION, PRESSURE = 'animation', 'pressure'

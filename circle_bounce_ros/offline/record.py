@@ -10,7 +10,6 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from circle_bounce_ros.encoding.stamps import SECOND
 from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError, Simulation
 from circle_bounce_ros.offline.bag import Bag, topics_of
@@ -18,8 +17,9 @@ from circle_bounce_ros.offline.parquet import TABLES, ParquetFolder
 from circle_bounce_ros.offline.recording import Sink, moments
 from circle_bounce_ros.offline.repair import RepairError, repair
 from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping
-from circle_bounce_ros.offline.ticks import Ticks
 from circle_bounce_ros.scene_file import load_scene
+from circle_bounce_ros.schedule.recording import RecordingTicks
+from circle_bounce_ros.schedule.times import SECOND
 
 COMMAND = 'bounce_record'
 BAG, PARQUET = 'bag', 'parquet'
@@ -96,7 +96,7 @@ def record(chosen: argparse.Namespace) -> int:
     if not chosen.frame_id:
         raise RecordError("frame-id: must not be empty, got ''")
     try:
-        ticks = Ticks(chosen.rate, chosen.duration, scene.restart_after)
+        ticks = RecordingTicks(chosen.rate, chosen.duration, scene.restart_after)
     except ValueError as error:
         raise RecordError(str(error)) from None
     folder: Path = chosen.output
@@ -104,7 +104,7 @@ def record(chosen: argparse.Namespace) -> int:
         raise RecordError(f'{folder}: exists already, nothing was touched')
     began = time.monotonic()
     last: Moment | None = None
-    with Stopping() as stop, Progress(ticks, len(scene.circles)) as bar:
+    with Stopping() as stop, ProgressBar(ticks, len(scene.circles)) as bar:
         sink = make_sink(folder, scene, chosen, topics)
         try:
             simulation = Simulation(scene, record_contacts=sink.wants_contacts)
@@ -170,10 +170,10 @@ def size(folder: Path) -> int:
     return sum(path.stat().st_size for path in folder.rglob('*') if path.is_file())
 
 
-class Progress:
+class ProgressBar:
     """A bar with the time left, on a terminal; none elsewhere."""
 
-    def __init__(self, ticks: Ticks, circles: int) -> None:
+    def __init__(self, ticks: RecordingTicks, circles: int) -> None:
         self._shown = 0.0
         self._bar = tqdm(
             total=ticks.duration,
@@ -185,7 +185,7 @@ class Progress:
             bar_format='{desc} {percentage:3.0f}% |{bar}| {n:.0f}/{total:.0f} s, {remaining} left{postfix}',
         )
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> ProgressBar:
         return self
 
     def __exit__(self, *_: object) -> None:

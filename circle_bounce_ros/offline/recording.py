@@ -8,13 +8,11 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
-from circle_bounce_ros.encoding.stamps import kernel_time
 from circle_bounce_ros.encoding.topics import Moment, State
 from circle_bounce_ros.kernel import Circle, Scene, Simulation
-from circle_bounce_ros.offline.ticks import Tick
-
-# Steps of work between two questions whether to stop: some 0.1 s of the plain engine.
-SLICE = 4096
+from circle_bounce_ros.schedule.schedules import Tick
+from circle_bounce_ros.schedule.slices import advance
+from circle_bounce_ros.schedule.times import kernel_time
 
 # Beside the recording in its folder: the scene with every circle in it, as a scene file.
 SCENE_FILE = 'scene.yaml'
@@ -58,12 +56,9 @@ def moments(
 
     """
     for tick in ticks:
-        target = kernel_time(tick.scene_ns)
-        if target < simulation.time:
+        if kernel_time(tick.scene_ns) < simulation.time:
             simulation.reset()
-        while not simulation.advance_to(target, at_most=SLICE):
-            if stop():
-                return
+        advance(simulation, tick.scene_ns, lambda: not stop())
         if stop():
             return
         yield Moment(tick.stamp_ns, tick.scene_ns, State(simulation))

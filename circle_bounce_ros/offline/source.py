@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.encoding.stamps import kernel_time
 from circle_bounce_ros.kernel import Circle, Scene, Simulation
 from circle_bounce_ros.offline.recording import moments
-from circle_bounce_ros.offline.ticks import Ticks
+from circle_bounce_ros.schedule.recording import RecordingTicks
+from circle_bounce_ros.schedule.times import kernel_time
 
 # A stamp is rounded down to a nanosecond: so little too early is in time.
 ROUNDING = 1e-8  # s
@@ -112,7 +112,7 @@ def of_scene(scene: Scene, duration: float, rate: float) -> Source:
 
     """
     try:
-        ticks = Ticks(rate, duration, scene.restart_after)
+        ticks = RecordingTicks(rate, duration, scene.restart_after)
     except ValueError as error:
         raise SourceError(str(error)) from None
 

@@ -13,7 +13,8 @@ from rclpy.node import Node
 from circle_bounce_ros.encoding.topics import Topic
 from circle_bounce_ros.ros.publishers import create_publisher
 from circle_bounce_ros.ros.runner import Runner
-from circle_bounce_ros.ros.timeline import SECOND, Progress
+from circle_bounce_ros.schedule.schedules import Progress
+from circle_bounce_ros.schedule.times import SECOND
 
 DIAGNOSTICS = Topic('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray')
 

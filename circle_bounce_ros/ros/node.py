@@ -26,7 +26,8 @@ from circle_bounce_ros.ros.parameters import ParameterError, Parameters
 from circle_bounce_ros.ros.publishers import Publishers
 from circle_bounce_ros.ros.runner import Runner
 from circle_bounce_ros.ros.ticker import Ticker
-from circle_bounce_ros.ros.timeline import SECOND, ClockTimeline, Tick, WallTimeline
+from circle_bounce_ros.schedule.schedules import ClockSchedule, Tick, WallSchedule
+from circle_bounce_ros.schedule.times import SECOND
 
 # However heavy the scene, a service waits about this long for a tick and no longer.
 BUDGET = 0.1  # s
@@ -57,8 +58,8 @@ class BounceNode(Node):
         self._lock = threading.Lock()
         self._settings = Parameters(self, self._on_change)
         self._leads = self._settings['publish_clock']
-        timeline = ClockTimeline if self._leads else WallTimeline
-        self._timeline: ClockTimeline | WallTimeline = timeline(
+        kind = ClockSchedule if self._leads else WallSchedule
+        self._schedule: ClockSchedule | WallSchedule = kind(
             self._settings['rate'],
             self._settings['time_scale'],
             self._settings['start_paused'],
@@ -72,14 +73,14 @@ class BounceNode(Node):
         self.create_service(Trigger, '~/step', self._step)
         # ROS time would stop the timers whenever it stands or jumps back.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._ticker = Ticker(self, steady, self._on_timer, self._timeline.timer_period_ns)
+        self._ticker = Ticker(self, steady, self._on_timer, self._schedule.timer_period_ns)
         self.create_timer(DIAGNOSTICS_PERIOD, self._on_second, clock=steady)
 
     def _show_scene(self, contacts_before: int = 0) -> None:
         scene = self._settings.scene
         self._runner = Runner(scene, contacts_before)
         self._outputs.show(scene)
-        self._timeline.set_restart_after(scene.restart_after)
+        self._schedule.set_restart_after(scene.restart_after)
         self.get_logger().info(f'{describe(scene)} in frame {self._settings["frame_id"]!r}')
         if self._compiler.start():
             self.get_logger().info(
@@ -97,20 +98,20 @@ class BounceNode(Node):
         with self._lock:
             began = time.monotonic_ns()
             reading = self._read_clock()
-            while (tick := self._timeline.begin(reading)) is not None:
+            while (tick := self._schedule.begin(reading)) is not None:
                 complete = self._show(tick)
                 if not complete or time.monotonic_ns() - began > CATCHING_UP * SECOND:
                     break
-            progress = self._timeline.take_progress()
-            self._diagnostics.add_tick(began, self._timeline.timer_period_ns, progress)
+            progress = self._schedule.take_progress()
+            self._diagnostics.add_tick(began, self._schedule.timer_period_ns, progress)
             self._report_change()
 
     def _read_clock(self) -> int:
         """Return what the clock that drives the scene reads, ns."""
-        if isinstance(self._timeline, ClockTimeline):
+        if isinstance(self._schedule, ClockSchedule):
             return time.monotonic_ns()
         clock = self.get_clock()
-        self._timeline.follow(outside=clock.ros_time_is_active)
+        self._schedule.follow(outside=clock.ros_time_is_active)
         return clock.now().nanoseconds
 
     def _show(self, tick: Tick) -> bool:
@@ -119,7 +120,7 @@ class BounceNode(Node):
             self.get_logger().warning('the clock jumped back: the scene starts again')
         self._runner.record_contacts(self._outputs.contacts_are_wanted)
         reached_ns = self._runner.advance_to(tick.scene_ns, BUDGET)
-        if not self._timeline.came_to(reached_ns):
+        if not self._schedule.came_to(reached_ns):
             return False
         self._outputs.publish(Moment(tick.stamp_ns, reached_ns, self._runner.state))
         return True
@@ -137,7 +138,7 @@ class BounceNode(Node):
     def _facts(self) -> Facts:
         scene = self._runner.scene
         return Facts(
-            paused=self._timeline.paused,
+            paused=self._schedule.paused,
             scene=scene.name,
             seed=scene.seed,
             time_scale=self._settings['time_scale'],
@@ -145,8 +146,8 @@ class BounceNode(Node):
         )
 
     def _now_ns(self) -> int:
-        if isinstance(self._timeline, ClockTimeline):
-            return self._timeline.stamp_ns
+        if isinstance(self._schedule, ClockSchedule):
+            return self._schedule.stamp_ns
         return self.get_clock().now().nanoseconds
 
     def _has_started(self) -> bool:
@@ -157,24 +158,24 @@ class BounceNode(Node):
         with self._lock:
             if names & {'scene', 'seed'}:
                 self._show_scene(self._runner.contact_count)
-                self._timeline.restart()
+                self._schedule.restart()
             if 'rate' in names:
-                self._timeline.set_rate(self._settings['rate'])
+                self._schedule.set_rate(self._settings['rate'])
             if 'time_scale' in names:
-                self._timeline.set_time_scale(self._settings['time_scale'])
-            self._ticker.set_period(self._timeline.timer_period_ns)
+                self._schedule.set_time_scale(self._settings['time_scale'])
+            self._ticker.set_period(self._schedule.timer_period_ns)
             self._report_change()
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self._lock:
-            self._timeline.restart()
+            self._schedule.restart()
         response.success = True
         response.message = f'{describe(self._runner.scene)}: starts again from its first instant'
         return response
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         with self._lock:
-            self._timeline.paused = request.data
+            self._schedule.paused = request.data
             self._report_change()
         response.success = True
         response.message = 'paused' if request.data else 'running'
@@ -182,10 +183,10 @@ class BounceNode(Node):
 
     def _step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self._lock:
-            response.success = self._timeline.paused
-            if self._timeline.paused:
-                self._timeline.step()
-                response.message = f'scene time {self._timeline.scene_ns / SECOND:.9f} s'
+            response.success = self._schedule.paused
+            if self._schedule.paused:
+                self._schedule.step()
+                response.message = f'scene time {self._schedule.scene_ns / SECOND:.9f} s'
             else:
                 response.message = 'not paused: only a paused scene goes step by step'
         return response

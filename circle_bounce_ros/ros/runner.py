@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import time
 
-from circle_bounce_ros.encoding.stamps import SECONDS_PER_NS, kernel_time
 from circle_bounce_ros.encoding.topics import State
 from circle_bounce_ros.kernel import (
     Scene,
@@ -13,21 +11,8 @@ from circle_bounce_ros.kernel import (
     compiled_code_is_ready,
     kinetic_energy,
 )
-
-# Steps of work between two looks at the clock: at first about 10 ms of the plain engine. A slice that took less
-# than SHORT lets the next one be twice as large, for a call costs as much as some twenty steps of compiled code.
-SLICE = 256
-SHORT = 0.005  # s
-
-
-def first_ns_after(seconds: float) -> int:
-    """Return the first whole nanosecond whose `kernel_time` is not before this time."""
-    scene_ns = math.ceil(seconds / SECONDS_PER_NS)
-    while kernel_time(scene_ns) < seconds:
-        scene_ns += 1
-    while scene_ns > 0 and kernel_time(scene_ns - 1) >= seconds:
-        scene_ns -= 1
-    return scene_ns
+from circle_bounce_ros.schedule.slices import advance
+from circle_bounce_ros.schedule.times import kernel_time
 
 
 def start(scene: Scene) -> Simulation:
@@ -100,23 +85,10 @@ class Runner:
             For contacts without end at one instant.
 
         """
-        simulation = self._simulation
-        target = kernel_time(scene_ns)
-        if target < simulation.time:
-            self._contacts_before += simulation.contact_count
-            wanted = simulation.record_contacts
-            self._simulation = simulation = start(simulation.scene)
-            simulation.record_contacts = wanted
-        began = time.monotonic()
-        deadline = began + seconds
-        most = SLICE
-        while not simulation.advance_to(target, at_most=most):
-            now = time.monotonic()
-            if now - began < SHORT:
-                most *= 2
-            began = now
-            if now >= deadline:
-                scene_ns = min(first_ns_after(simulation.time), scene_ns)
-                simulation.advance_to(kernel_time(scene_ns))
-                break
-        return scene_ns
+        if kernel_time(scene_ns) < self._simulation.time:
+            self._contacts_before += self._simulation.contact_count
+            wanted = self._simulation.record_contacts
+            self._simulation = start(self.scene)
+            self._simulation.record_contacts = wanted
+        deadline = time.monotonic() + seconds
+        return advance(self._simulation, scene_ns, lambda: time.monotonic() < deadline)

@@ -9,7 +9,8 @@ from collections.abc import Callable
 from rclpy.clock import Clock
 from rclpy.node import Node
 
-from circle_bounce_ros.ros.timeline import MOST_MADE_UP, SECOND
+from circle_bounce_ros.schedule.schedules import MOST_MADE_UP
+from circle_bounce_ros.schedule.times import SECOND
 
 # Shorter periods than this are for the thread: at 1,000 Hz the executor loses ticks, and takes half a core for it.
 SHORT = SECOND // 200  # ns

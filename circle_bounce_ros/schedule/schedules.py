@@ -1,8 +1,7 @@
 """
 Scene time, exact to the nanosecond: which instant of the scene each tick shows, and with which stamp.
 
-No ROS here. Times are whole nanoseconds; what is left of one is carried as a fraction, so that nothing is
-ever lost or added.
+Times are whole nanoseconds; what is left of one is carried as a fraction, so that nothing is ever lost or added.
 """
 
 from __future__ import annotations
@@ -12,13 +11,16 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 
-SECOND = 10**9  # ns
+from circle_bounce_ros.schedule.times import (
+    LAST_INSTANT,
+    SECOND,
+    exact_decimal,
+    instant_of,
+    period_of,
+)
 
 # A tick never makes up more than this, so that a machine that was slow or asleep cannot start an avalanche.
 MOST_MADE_UP = SECOND // 10  # ns
-
-# Messages cannot say later times: their seconds are int32.
-LAST_INSTANT = 2**31 * SECOND - 1  # ns
 
 
 @dataclass(frozen=True)
@@ -75,16 +77,7 @@ class Progress:
         )
 
 
-def as_written(value: float) -> Fraction:
-    """
-    Return the decimal number that somebody wrote, exactly.
-
-    A rate of 0.1 Hz then has a period of 10 s and not of 9.99999999999999944 s.
-    """
-    return Fraction(repr(float(value)))
-
-
-class Timeline(ABC):
+class Schedule(ABC):
     """
     Where the scene is in its own time, and how it goes on.
 
@@ -102,8 +95,8 @@ class Timeline(ABC):
 
     def __init__(self, rate: float, time_scale: float, paused: bool = False) -> None:
         self.paused = paused
-        self._period = SECOND / as_written(rate)
-        self._time_scale = as_written(time_scale)
+        self._period = period_of(rate)
+        self._time_scale = exact_decimal(time_scale)
         self._position = Fraction(0)
         self._restart_at = LAST_INSTANT
         self._shows_first_instant = False
@@ -122,17 +115,16 @@ class Timeline(ABC):
     def set_rate(self, rate: float) -> None:
         """Change the rate; the scene stays where it is."""
         self._drop_fractions()
-        self._period = SECOND / as_written(rate)
+        self._period = period_of(rate)
 
     def set_time_scale(self, time_scale: float) -> None:
         """Change the speed from the next tick on; the scene stays where it is."""
         self._drop_fractions()
-        self._time_scale = as_written(time_scale)
+        self._time_scale = exact_decimal(time_scale)
 
     def set_restart_after(self, seconds: float) -> None:
         """Let the scene start again once it has shown this instant, `inf` for never (in 68 years)."""
-        in_time = seconds < LAST_INSTANT / SECOND
-        self._restart_at = max(1, round(as_written(seconds) * SECOND)) if in_time else LAST_INSTANT
+        self._restart_at = instant_of(seconds)
 
     def restart(self) -> None:
         """Go back to the first instant of the scene, which the next tick shows."""
@@ -177,7 +169,7 @@ class Timeline(ABC):
             self._position = min(self._position + amount, Fraction(self._restart_at))
 
 
-class WallTimeline(Timeline):
+class WallSchedule(Schedule):
     """
     Wall mode: the scene goes on by what has passed on a clock, and stamps are that clock's readings.
 
@@ -229,7 +221,7 @@ class WallTimeline(Timeline):
         return True
 
 
-class ClockTimeline(Timeline):
+class ClockSchedule(Schedule):
     """
     Clock mode: the node is the time source. Tick k has the stamp `k * 10**9 // rate`, from 1 on.
 
