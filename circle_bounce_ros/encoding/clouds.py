@@ -15,22 +15,34 @@ from numpy.typing import ArrayLike, NDArray
 from circle_bounce_ros.encoding.checks import floats, lengths
 from circle_bounce_ros.encoding.layout import FLOAT32, FLOAT64, UINT8, UINT32, Layout
 from circle_bounce_ros.encoding.stamps import put_header, split
-from circle_bounce_ros.kernel import CONTACT
+from circle_bounce_ros.kernel import CONTACT, CONTACT_FIELDS
 
 # The numbers that sensor_msgs/PointField has for them, from 1 on.
 KINDS = ('i1', 'u1', '<i2', '<u2', '<i4', '<u4', '<f4', '<f8')
 DATATYPES = {np.dtype(kind): number for number, kind in enumerate(KINDS, start=1)}
 
 BODY = np.dtype(
-    [(name, FLOAT32) for name in ('x', 'y', 'z', 'vx', 'vy', 'radius')] + [('id', UINT32)]
+    [(name, FLOAT32) for name in ('x', 'y', 'z', 'vx', 'vy', 'radius', 'mass')] + [('id', UINT32)]
 )
 
-# Aligned as a C compiler would: readers cast pointers.
-CONTACT_POINT = np.dtype(
-    [(name, FLOAT32) for name in ('x', 'y', 'z', 'nx', 'ny', 'nz', 'impulse')]
-    + [('time', FLOAT64), ('a', UINT32), ('b', UINT32), ('kind', UINT8)],
-    align=True,
-)
+
+def _contact_point() -> np.dtype[Any]:
+    """Return `kernel.CONTACT` as points in space: place and normal first, then large numbers before small ones."""
+    narrow: dict[type[np.generic], np.dtype[Any]] = {
+        np.float64: FLOAT32,
+        np.int64: UINT32,
+        np.uint8: UINT8,
+    }
+    types = {field.name: narrow[field.type] for field in CONTACT_FIELDS} | {'time': FLOAT64}
+    in_space: list[tuple[str, np.dtype[Any]]] = [
+        (name, FLOAT32) for name in ('x', 'y', 'z', 'nx', 'ny', 'nz')
+    ]
+    others = [item for item in types.items() if item not in in_space]
+    return np.dtype(in_space + sorted(others, key=lambda item: -item[1].itemsize))
+
+
+# Without padding: point_step is the sum of the fields, as readers that make points of their own expect.
+CONTACT_POINT = _contact_point()
 
 
 class _Cloud:
@@ -75,7 +87,7 @@ def _write(points: NDArray[np.void], columns: dict[str, NDArray[Any]]) -> bool:
 
 class BodiesEncoder:
     """
-    The moving circles as a cloud, one point each: x, y, z, vx, vy, radius (float32), id (uint32).
+    The moving circles as a cloud, one point each: x, y, z, vx, vy, radius, mass (float32), id (uint32).
 
     Parameters
     ----------
@@ -83,12 +95,14 @@ class BodiesEncoder:
     ids : (n,) int
         The circles' indices in the scene.
     radii : (n,) float, m
+    masses : (n,) float, kg
 
     """
 
-    def __init__(self, frame_id: str, ids: ArrayLike, radii: ArrayLike) -> None:
+    def __init__(self, frame_id: str, ids: ArrayLike, radii: ArrayLike, masses: ArrayLike) -> None:
         numbers = np.asarray(ids)
         sizes = lengths(radii, 'radii')
+        weights = floats(masses, sizes.shape, 'masses')
         if numbers.shape != sizes.shape:
             raise ValueError(f'ids: must have shape {sizes.shape}, got {numbers.shape}')
         wrong = np.flatnonzero((numbers < 0) | (numbers >= 2**32))
@@ -97,7 +111,9 @@ class BodiesEncoder:
             raise ValueError(f'ids[{first}]: must be from 0 to below 2**32, got {numbers[first]}')
         self._cloud = _Cloud(frame_id, BODY)
         self._points = np.zeros(sizes.size, BODY)
-        self._constants_are_dense = _write(self._points, {'radius': sizes, 'id': numbers})
+        self._constants_are_dense = _write(
+            self._points, {'radius': sizes, 'mass': weights, 'id': numbers}
+        )
 
     def encode(self, stamp_ns: int, positions: ArrayLike, velocities: ArrayLike) -> bytes:
         """
@@ -121,8 +137,8 @@ class ContactsEncoder:
     """
     Contacts as a cloud, one point each, in the order given.
 
-    x, y, z, nx, ny, nz, impulse (float32), time (float64, scene seconds), a, b (uint32),
-    kind (uint8).
+    The fields of `kernel.CONTACT_FIELDS` with z and nz: time is float64 (scene seconds), a and b are uint32,
+    kind is uint8, all others are float32.
     """
 
     def __init__(self, frame_id: str) -> None:

@@ -120,6 +120,7 @@ def feeds_of_each_tick(scene: Scene, frame_id: str, with_clock: bool) -> Iterato
     """Return what is said on each tick, in this order."""
     moving = [(i, circle) for i, circle in enumerate(scene.circles) if not circle.locked]
     radii = [circle.radius for _, circle in moving]
+    masses = [circle.mass for _, circle in moving]
     if with_clock:
         yield CLOCK, clock(ClockEncoder())
     yield TIME, scene_time(TimeReferenceEncoder(frame_id, scene.name))
@@ -128,7 +129,7 @@ def feeds_of_each_tick(scene: Scene, frame_id: str, with_clock: bool) -> Iterato
             yield pose_topic(circle), pose(PoseStampedEncoder(frame_id), row)
             yield twist_topic(circle), twist(TwistStampedEncoder(frame_id), row)
     yield POSES, poses(PoseArrayEncoder(frame_id, len(moving)))
-    yield BODIES, bodies(BodiesEncoder(frame_id, [i for i, _ in moving], radii))
+    yield BODIES, bodies(BodiesEncoder(frame_id, [i for i, _ in moving], radii, masses))
     yield CONTACTS, contacts(ContactsEncoder(frame_id))
     if can_be_marked(scene):
         yield MARKERS, markers(MovingMarkersEncoder(frame_id, radii))

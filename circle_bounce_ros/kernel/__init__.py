@@ -11,6 +11,12 @@ from circle_bounce_ros.kernel.contact import (
     distance,
     in_contact,
 )
+from circle_bounce_ros.kernel.contact_record import (
+    CONTACT,
+    CONTACT_FIELDS,
+    ContactField,
+    ContactKind,
+)
 from circle_bounce_ros.kernel.engine.compilation import compiled_code_is_ready
 from circle_bounce_ros.kernel.engine.modes import compile_ahead
 from circle_bounce_ros.kernel.impact import time_to_touch, time_to_wall
@@ -23,17 +29,14 @@ from circle_bounce_ros.kernel.reflection import (
     reflect_by_angles,
 )
 from circle_bounce_ros.kernel.scene import Circle, Scene, SceneError, Wall
-from circle_bounce_ros.kernel.simulation import (
-    CONTACT,
-    ContactKind,
-    EndlessContactsError,
-    Simulation,
-)
+from circle_bounce_ros.kernel.simulation import EndlessContactsError, Simulation
 
 __all__ = [
     'CONTACT',
+    'CONTACT_FIELDS',
     'BounceAngles',
     'Circle',
+    'ContactField',
     'ContactKind',
     'EndlessContactsError',
     'Scene',

@@ -3,44 +3,16 @@
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine import records
+from circle_bounce_ros.kernel.contact_record import CONTACT
 from circle_bounce_ros.kernel.engine.driver import drive
 from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS
 from circle_bounce_ros.kernel.scene import Scene
 
 Floats = NDArray[np.float64]
-
-
-class ContactKind(IntEnum):
-    """What a moving circle has touched."""
-
-    CIRCLE = records.CIRCLE  # another moving circle
-    LOCKED = records.LOCKED
-    WALL = records.WALL
-    WALL_END = records.WALL_END
-
-
-# One row a contact. Circle a has touched b: the circle of that id, or for the last two kinds the wall of that
-# number (the lowest, for an end that walls share). The normal is the unit vector from a to b, the impulse
-# what b receives along it. Of two moving circles a is the one of lower id.
-CONTACT = np.dtype(
-    [
-        ('time', np.float64),  # s
-        ('a', np.int64),
-        ('b', np.int64),
-        ('kind', np.uint8),  # ContactKind
-        ('x', np.float64),  # m, the contact point
-        ('y', np.float64),
-        ('nx', np.float64),
-        ('ny', np.float64),
-        ('impulse', np.float64),  # N s
-    ]
-)
 
 
 class EndlessContactsError(RuntimeError):

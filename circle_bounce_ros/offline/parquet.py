@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pyarrow import parquet
 
 from circle_bounce_ros.encoding.topics import Moment
-from circle_bounce_ros.kernel import Scene
+from circle_bounce_ros.kernel import CONTACT_FIELDS, ContactField, Scene
 from circle_bounce_ros.offline.recording import write_scene
 from circle_bounce_ros.schedule.times import kernel_time
 
@@ -32,6 +32,13 @@ Column = tuple[str, pa.DataType, str, str]
 STAMP: Column = ('stamp', pa.int64(), 'ns', 'simulated time since the start, never runs backwards')
 TIME: Column = ('time', pa.float64(), 's', 'scene time')
 
+
+def _column(field: ContactField) -> Column:
+    # Ids are never negative; all other types are the kernel's.
+    kind = pa.uint32() if field.type is np.int64 else pa.from_numpy_dtype(field.type)
+    return field.name, kind, field.unit, field.meaning
+
+
 TABLES: dict[str, list[Column]] = {
     'bodies': [
         STAMP,
@@ -42,18 +49,7 @@ TABLES: dict[str, list[Column]] = {
         ('vx', pa.float64(), 'm/s', 'velocity'),
         ('vy', pa.float64(), 'm/s', 'velocity'),
     ],
-    'contacts': [
-        STAMP,
-        TIME,
-        ('a', pa.uint32(), '1', 'index of the moving circle in the scene'),
-        ('b', pa.uint32(), '1', 'index of the other circle in the scene, or of the wall'),
-        ('kind', pa.uint8(), '1', '0 circle, 1 locked circle, 2 wall, 3 wall end'),
-        ('x', pa.float64(), 'm', 'contact point'),
-        ('y', pa.float64(), 'm', 'contact point'),
-        ('nx', pa.float64(), '1', 'normal from a to b'),
-        ('ny', pa.float64(), '1', 'normal from a to b'),
-        ('impulse', pa.float64(), 'N s', 'what b receives along the normal'),
-    ],
+    'contacts': [STAMP, *map(_column, CONTACT_FIELDS)],
 }
 
 CIRCLES: list[Column] = [

@@ -126,16 +126,19 @@ BODY_FIELDS = [
     ('vx', 12, PointField.FLOAT32),
     ('vy', 16, PointField.FLOAT32),
     ('radius', 20, PointField.FLOAT32),
-    ('id', 24, PointField.UINT32),
+    ('mass', 24, PointField.FLOAT32),
+    ('id', 28, PointField.UINT32),
 ]
 
 
-def bodies(frame_id, stamp_ns, ids, radii, positions, velocities):
+def bodies(frame_id, stamp_ns, ids, radii, masses, positions, velocities):
     rows = [
-        (*map(float32, (x, y, 0.0, vx, vy, radius)), int(id))
-        for id, radius, (x, y), (vx, vy) in zip(ids, radii, positions, velocities, strict=True)
+        (*map(float32, (x, y, 0.0, vx, vy, radius, mass)), int(id))
+        for id, radius, mass, (x, y), (vx, vy) in zip(
+            ids, radii, masses, positions, velocities, strict=True
+        )
     ]
-    return cloud(frame_id, stamp_ns, BODY_FIELDS, '<6fI', rows)
+    return cloud(frame_id, stamp_ns, BODY_FIELDS, '<7fI', rows)
 
 
 CONTACT_FIELDS = [
@@ -145,21 +148,29 @@ CONTACT_FIELDS = [
     ('nx', 12, PointField.FLOAT32),
     ('ny', 16, PointField.FLOAT32),
     ('nz', 20, PointField.FLOAT32),
-    ('impulse', 24, PointField.FLOAT32),
-    ('time', 32, PointField.FLOAT64),
-    ('a', 40, PointField.UINT32),
-    ('b', 44, PointField.UINT32),
-    ('kind', 48, PointField.UINT8),
+    ('time', 24, PointField.FLOAT64),
+    ('a', 32, PointField.UINT32),
+    ('b', 36, PointField.UINT32),
+    ('impulse', 40, PointField.FLOAT32),
+    ('ax0', 44, PointField.FLOAT32),
+    ('ay0', 48, PointField.FLOAT32),
+    ('ax1', 52, PointField.FLOAT32),
+    ('ay1', 56, PointField.FLOAT32),
+    ('bx0', 60, PointField.FLOAT32),
+    ('by0', 64, PointField.FLOAT32),
+    ('bx1', 68, PointField.FLOAT32),
+    ('by1', 72, PointField.FLOAT32),
+    ('kind', 76, PointField.UINT8),
 ]
 
 
 def contacts(frame_id, stamp_ns, rows):
-    """Return the cloud of rows that are (time, a, b, kind, x, y, nx, ny, impulse)."""
+    """Return the cloud of rows that are (time, a, b, kind, x, y, nx, ny, impulse, 8 velocities)."""
     points = [
-        (*map(float32, (x, y, 0.0, nx, ny, 0.0, impulse)), time, a, b, kind)
-        for time, a, b, kind, x, y, nx, ny, impulse in rows
+        (*map(float32, (x, y, 0.0, nx, ny, 0.0)), time, a, b, *map(float32, rest), kind)
+        for time, a, b, kind, x, y, nx, ny, *rest in rows
     ]
-    return cloud(frame_id, stamp_ns, CONTACT_FIELDS, '<7f4xdIIB7x', points)
+    return cloud(frame_id, stamp_ns, CONTACT_FIELDS, '<6fdII9fB', points)
 
 
 def read_points(message):

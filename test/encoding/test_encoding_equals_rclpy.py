@@ -118,20 +118,22 @@ def test_pose_array_of_any_length_in_any_frame(count, frame_id):
         assert cells([pose.position.y for pose in read]) == cells(positions[:, 1])
 
 
+sizes = st.floats(1e-60, 1e60)
+
+
 @few
 @given(
     texts,
     stamps,
-    st.lists(
-        st.tuples(st.integers(0, 2**32 - 1), st.floats(1e-60, 1e60), points, points), max_size=7
-    ),
+    st.lists(st.tuples(st.integers(0, 2**32 - 1), sizes, sizes, points, points), max_size=7),
 )
 def test_bodies(frame_id, stamp_ns, rows):
-    ids, radii, positions, velocities = zip(*rows, strict=True) if rows else [()] * 4
-    encoded = BodiesEncoder(frame_id, ids, radii).encode(
+    ids, radii, masses, positions, velocities = zip(*rows, strict=True) if rows else [()] * 5
+    encoded = BodiesEncoder(frame_id, ids, radii, masses).encode(
         stamp_ns, np.reshape(positions, (-1, 2)), np.reshape(velocities, (-1, 2))
     )
-    assert_same(encoded, ordinary.bodies(frame_id, stamp_ns, ids, radii, positions, velocities))
+    wanted = ordinary.bodies(frame_id, stamp_ns, ids, radii, masses, positions, velocities)
+    assert_same(encoded, wanted)
 
 
 @pytest.mark.parametrize('count', COUNTS)
@@ -139,13 +141,13 @@ def test_bodies(frame_id, stamp_ns, rows):
 def test_bodies_of_any_number_in_any_frame(count, frame_id):
     rng = np.random.default_rng(count)
     ids, radii = rng.permutation(count) * 1000, rng.uniform(0.01, 2.0, count)
-    encoder = BodiesEncoder(frame_id, ids, radii)
+    masses = rng.uniform(0.01, 2.0, count)
+    encoder = BodiesEncoder(frame_id, ids, radii, masses)
     for stamp_ns in (LAST_NS, 0):
         positions, velocities = random_points(rng, count), random_points(rng, count)
         encoded = encoder.encode(stamp_ns, positions, velocities)
-        assert_same(
-            encoded, ordinary.bodies(frame_id, stamp_ns, ids, radii, positions, velocities)
-        )
+        wanted = ordinary.bodies(frame_id, stamp_ns, ids, radii, masses, positions, velocities)
+        assert_same(encoded, wanted)
         message = deserialize_message(encoded, PointCloud2)
         assert message.is_dense
         read = ordinary.read_points(message)
@@ -158,6 +160,7 @@ def test_bodies_of_any_number_in_any_frame(count, frame_id):
             'vx': velocities[:, 0],
             'vy': velocities[:, 1],
             'radius': radii,
+            'mass': masses,
         }.items():
             assert cells([point[name] for point in read]) == cells(
                 [ordinary.float32(value) for value in values]
@@ -169,7 +172,7 @@ contact_rows = st.tuples(
     st.integers(0, 2**32 - 1),
     st.integers(0, 2**32 - 1),
     st.integers(0, 3),
-    *[numbers] * 5,
+    *[numbers] * 13,
 )
 
 
@@ -266,10 +269,10 @@ def test_static_markers_of_many_locked_circles(locked):
 
 
 def test_what_float32_cannot_hold_is_infinite_and_the_cloud_says_so():
-    encoder = BodiesEncoder('world', [0], [1.0])
+    encoder = BodiesEncoder('world', [0], [1.0], [1.0])
     far = deserialize_message(encoder.encode(0, [(1e39, -1e39)], [(1, 2)]), PointCloud2)
     assert [far.is_dense, *map(ordinary.read_points(far)[0].get, 'xy')] == [False, np.inf, -np.inf]
     near = deserialize_message(encoder.encode(0, [(1e38, -1e38)], [(1, 2)]), PointCloud2)
     assert near.is_dense
-    huge = BodiesEncoder('world', [0], [1e39]).encode(0, [(0, 0)], [(1, 2)])
+    huge = BodiesEncoder('world', [0], [1e39], [1.0]).encode(0, [(0, 0)], [(1, 2)])
     assert not deserialize_message(huge, PointCloud2).is_dense

@@ -26,7 +26,7 @@ WITH_STAMP = {
     'PoseStamped': lambda t: PoseStampedEncoder('w').encode(t, (0, 0)),
     'TwistStamped': lambda t: TwistStampedEncoder('w').encode(t, (0, 0)),
     'PoseArray': lambda t: PoseArrayEncoder('w', 2).encode(t, PAIR),
-    'Bodies': lambda t: BodiesEncoder('w', [0, 1], [1, 1]).encode(t, PAIR, PAIR),
+    'Bodies': lambda t: BodiesEncoder('w', [0, 1], [1, 1], [1, 1]).encode(t, PAIR, PAIR),
     'Contacts': lambda t: ContactsEncoder('w').encode(t, np.zeros(0, CONTACT)),
     'TimeReference': lambda t: TimeReferenceEncoder('w', 's').encode(t, 0),
     'Clock': lambda t: ClockEncoder().encode(t),
@@ -85,35 +85,35 @@ def test_a_whole_number_of_numpy_is_as_good_a_stamp(encode):
         ),
         (
             'positions: must have shape (2, 2), got (2, 3)',
-            lambda: BodiesEncoder('w', [0, 1], [1, 1]).encode(0, np.zeros((2, 3)), PAIR),
+            lambda: BodiesEncoder('w', [0, 1], [1, 1], [1, 1]).encode(0, np.zeros((2, 3)), PAIR),
         ),
         (
             'velocities: must have shape (2, 2), got (4,)',
-            lambda: BodiesEncoder('w', [0, 1], [1, 1]).encode(0, PAIR, np.zeros(4)),
+            lambda: BodiesEncoder('w', [0, 1], [1, 1], [1, 1]).encode(0, PAIR, np.zeros(4)),
         ),
         (
             'ids: must have shape (2,), got (3,)',
-            lambda: BodiesEncoder('w', [0, 1, 2], [1, 1]),
+            lambda: BodiesEncoder('w', [0, 1, 2], [1, 1], [1, 1]),
         ),
         (
             'ids[1]: must be from 0 to below 2**32, got -1',
-            lambda: BodiesEncoder('w', [0, -1], [1, 1]),
+            lambda: BodiesEncoder('w', [0, -1], [1, 1], [1, 1]),
         ),
         (
             'ids[0]: must be from 0 to below 2**32, got 4294967296',
-            lambda: BodiesEncoder('w', [2**32, 0], [1, 1]),
+            lambda: BodiesEncoder('w', [2**32, 0], [1, 1], [1, 1]),
         ),
         (
             'radii: must have shape (n,), got (1, 2)',
-            lambda: BodiesEncoder('w', [0, 1], [[1, 1]]),
+            lambda: BodiesEncoder('w', [0, 1], [[1, 1]], [1, 1]),
         ),
         (
             'radii[1]: must be finite and > 0 m, got -0.1',
-            lambda: BodiesEncoder('w', [0, 1], [1, -0.1]),
+            lambda: BodiesEncoder('w', [0, 1], [1, -0.1], [1, 1]),
         ),
         (
             'radii[0]: must be finite and > 0 m, got 0.0',
-            lambda: BodiesEncoder('w', [0, 1], [0, 1]),
+            lambda: BodiesEncoder('w', [0, 1], [0, 1], [1, 1]),
         ),
         (
             'radii[0]: must be finite and > 0 m, got nan',

@@ -29,7 +29,7 @@ positions, velocities = simulation.positions, simulation.velocities
 PoseStampedEncoder('world').encode(1, positions[0])
 TwistStampedEncoder('world').encode(1, velocities[0])
 PoseArrayEncoder('world', 1).encode(1, positions)
-BodiesEncoder('world', simulation.ids, simulation.radii).encode(1, positions, velocities)
+BodiesEncoder('world', simulation.ids, simulation.radii, simulation.masses).encode(1, positions, velocities)
 ContactsEncoder('world').encode(1, simulation.drain_contacts())
 TimeReferenceEncoder('world', 'scene').encode(1, 2)
 ClockEncoder().encode(1)

@@ -115,11 +115,13 @@ class Referee:
         normal = np.array([contact['nx'], contact['ny']])
         point = np.array([contact['x'], contact['y']])
         self._expect_place(a, point - self.radius[a] * normal)
+        self._expect_velocities(contact, '0')
         if kind == CIRCLE:
             self._expect_place(b, point + self.radius[b] * normal)
             impulse = self._exchange(a, b, normal)
         else:
             impulse = self._turn(a, normal)
+        self._expect_velocities(contact, '1')
         if not math.isclose(impulse, contact['impulse'], rel_tol=1e-6):
             raise Fault(f'impulse {contact["impulse"]} logged, {impulse} due at {t}')
         for i in (a, b) if kind == CIRCLE else (a,):
@@ -140,6 +142,16 @@ class Referee:
         if np.abs(self.position[i] - place).max() > self.close:
             raise Fault(f'circle {i} is at {self.position[i]}, logged {place}, at {self.now}')
         self.position[i] = place
+
+    def _expect_velocities(self, contact, when):
+        """Before a contact ('0') and after it ('1'); what is locked has none."""
+        for body, number in (('a', contact['a']), ('b', contact['b'])):
+            moves = body == 'a' or contact['kind'] == CIRCLE
+            due = self.velocity[number] if moves else np.zeros(2)
+            logged = np.array([contact[f'{body}x{when}'], contact[f'{body}y{when}']])
+            # Velocities of the whole run are near each other's size; close is some digits of a metre.
+            if not np.allclose(logged, due, rtol=1e-6, atol=self.close):
+                raise Fault(f'velocity {logged} of {body} logged, {due} due at {self.now}')
 
     def _exchange(self, a, b, normal):
         """In the frame of the centre of mass both velocities are reflected about the normal."""

@@ -81,6 +81,9 @@ def test_referee_catches_a_contact_left_out(honest):
         ('nx', lambda v: v + 1e-3),
         ('impulse', lambda v: 1.001 * v),
         ('x', lambda v: v + 1e-6),
+        ('ax0', lambda v: -v),
+        ('ay1', lambda v: v + 1e-3),
+        ('bx1', lambda v: v + 1e-3),
     ],
 )
 def test_referee_catches_a_forged_contact(honest, field, change):

@@ -11,7 +11,7 @@ from observing import nanoseconds, read_points, scene_times, stamps
 from sensor_msgs.msg import PointCloud2, TimeReference
 from visualization_msgs.msg import Marker, MarkerArray
 
-from circle_bounce_ros.kernel import Simulation
+from circle_bounce_ros.kernel import CONTACT, Simulation
 from circle_bounce_ros.scene_file import load_scene
 
 # Every kind of contact, names and none, several radii, locked circles before and between moving ones.
@@ -114,9 +114,7 @@ def test_all_topics_equal_the_kernel_bit_for_bit(start, observer, write_scene, m
         expected = [contact for contact in oracle.contacts if after < contact[0] <= until]
         points = read_points(message)
         assert points['time'].tolist() == [contact[0] for contact in expected]
-        for column, name in enumerate(
-            ('a', 'b', 'kind', 'x', 'y', 'nx', 'ny', 'impulse'), start=1
-        ):
+        for column, name in enumerate(CONTACT.names[1:], start=1):
             values = np.array([contact[column] for contact in expected])
             assert points[name].tolist() == values.astype(points[name].dtype).tolist()
     assert len({contact[3] for contact in oracle.contacts}) >= 3

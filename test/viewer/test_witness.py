@@ -13,7 +13,7 @@ from circle_bounce_ros.viewer.cloud import read_cloud, stamp_of
 from circle_bounce_ros.viewer.server import Server
 from circle_bounce_ros.viewer.witness import Witness
 
-BODIES = BodiesEncoder('world', [3, 5], [0.1, 0.2])
+BODIES = BodiesEncoder('world', [3, 5], [0.1, 0.2], [1.0, 1.0])
 CONTACTS = ContactsEncoder('world')
 
 

@@ -25,8 +25,10 @@ def collide(world: World, i: int, j: int, time: float) -> None:
     ny = b.y - a.y
     push = push_xy(a.vx - b.vx, a.vy - b.vy, nx, ny, a.mass + b.mass)
     if push > 0.0:  # Else rounding, far from the origin: they do not approach and are let go.
+        before = a.vx, a.vy, b.vx, b.vy
         a.vx, a.vy, b.vx, b.vy = exchange_xy(a.vx, a.vy, b.vx, b.vy, a.mass, b.mass, nx, ny)
-        note(world, a, b.id, CIRCLE, nx, ny, a.mass * b.mass * push)
+        after = a.vx, a.vy, b.vx, b.vy
+        note(world, a, b.id, CIRCLE, nx, ny, a.mass * b.mass * push, before, after)
 
 
 def bounce_off(world: World, i: int, time: float) -> None:
@@ -50,12 +52,28 @@ def bounce_off(world: World, i: int, time: float) -> None:
         ny = post.y - circle.y
     push = push_xy(circle.vx, circle.vy, nx, ny, 1.0)
     if push > 0.0:
+        before = circle.vx, circle.vy, 0.0, 0.0
         circle.vx, circle.vy = reflect_xy(circle.vx, circle.vy, nx, ny)
-        note(world, circle, other, circle.kind, nx, ny, circle.mass * push)
+        after = circle.vx, circle.vy, 0.0, 0.0
+        note(world, circle, other, circle.kind, nx, ny, circle.mass * push, before, after)
 
 
-def note(world: World, a: Record, b: int, kind: int, nx: float, ny: float, push: float) -> None:
-    """Count a contact and log it. `push` is the impulse divided by the length of (nx, ny)."""
+def note(
+    world: World,
+    a: Record,
+    b: int,
+    kind: int,
+    nx: float,
+    ny: float,
+    push: float,
+    before: tuple[float, float, float, float],
+    after: tuple[float, float, float, float],
+) -> None:
+    """
+    Count a contact and log it.
+
+    `push` is the impulse divided by the length of (nx, ny); before and after are the velocities of a, then of b.
+    """
     state = world.state[0]
     state.contacts += 1
     if state.keep_log:
@@ -71,3 +89,5 @@ def note(world: World, a: Record, b: int, kind: int, nx: float, ny: float, push:
         line.ny = ny + 0.0
         line.x = a.x + a.radius * line.nx
         line.y = a.y + a.radius * line.ny
+        line.ax0, line.ay0, line.bx0, line.by0 = before
+        line.ax1, line.ay1, line.bx1, line.by1 = after

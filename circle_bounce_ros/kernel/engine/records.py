@@ -12,8 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from circle_bounce_ros.kernel.contact_record import CONTACT_FIELDS, ContactKind
+
 # What a circle is going to touch; the numbers of the first four are those of the contact log.
-CIRCLE, LOCKED, WALL, WALL_END, NOTHING = 0, 1, 2, 3, 4
+CIRCLE, LOCKED, WALL, WALL_END, NOTHING = *map(int, ContactKind), len(ContactKind)
 
 # The side of its cell that a circle leaves through. EVERYWHERE: look at all cells around.
 LEFT, RIGHT, DOWN, UP, EVERYWHERE = 0, 1, 2, 3, 4
@@ -55,9 +57,9 @@ TABLE = np.dtype(
     + [('columns', 'i8'), ('rows', 'i8')]  # of home
 )
 
+# `kernel.CONTACT` with all numbers of 8 bytes, so that each is aligned.
 NOTE = np.dtype(
-    [('time', 'f8'), ('a', 'i8'), ('b', 'i8'), ('kind', 'i8')]
-    + [(name, 'f8') for name in ('x', 'y', 'nx', 'ny', 'impulse')]
+    [(f.name, 'f8' if issubclass(f.type, np.floating) else 'i8') for f in CONTACT_FIELDS]
 )
 
 # All times in the world count from the epoch: clocks are set back before they grow beyond the span.
