@@ -13,9 +13,9 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from circle_bounce_ros.scene_file import scene_names
 from circle_bounce_ros.viewer.clients import Client, Frames
+from circle_bounce_ros.viewer.contacts import Contacts
 from circle_bounce_ros.viewer.messages import LARGEST_MESSAGE, MessageError, read
 from circle_bounce_ros.viewer.ros_link import Refusal, RosLink
-from circle_bounce_ros.viewer.witness import Witness
 
 LOOPBACK = '127.0.0.1'
 PORTS = 9  # tried one after the other
@@ -75,7 +75,6 @@ class Server:
 
     def __init__(self) -> None:
         self._frames = Frames()
-        self._witness = Witness()
         self._clients: set[Client] = set()
         self._diagnostics: dict[str, Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -156,25 +155,17 @@ class Server:
         elif channel == 'diagnostics':
             self._diagnostics = message
             self._tell_all(json.dumps({'type': 'diagnostics', **message}))
+        elif channel == 'contacts':
+            self._tell_contacts(message)
         if channel in ('bodies', 'static'):
             for client in self._clients:
                 client.wake()
-        if channel in ('bodies', 'contacts'):
-            self._tell_story(channel, message)
 
-    def _tell_story(self, channel: str, message: bytes) -> None:
-        circles = {client.circle for client in self._clients} - {-1}
-        if not circles:
-            return
-        if channel == 'bodies':
-            self._witness.see(message)
-        else:
-            self._witness.hear(message)
-        for circle, texts in self._witness.take(circles).items():
-            for client in self._clients:
-                if client.circle == circle:
-                    for text in texts:
-                        client.tell(text)
+    def _tell_contacts(self, message: bytes) -> None:
+        contacts = Contacts(message)
+        for client in self._clients:
+            if client.circle >= 0 and (own := contacts.of(client.circle)):
+                client.say(type='contacts', circle=client.circle, contacts=own)
 
     def _tell_all(self, text: str) -> None:
         for client in self._clients:
@@ -257,8 +248,6 @@ class Server:
 
     def _watch(self) -> None:
         is_wanted = any(client.circle >= 0 for client in self._clients)
-        if not is_wanted:
-            self._witness.forget()
         self._link.want_contacts(is_wanted)
 
     async def _ask(self, client: Client, wanted: dict[str, Any]) -> None:

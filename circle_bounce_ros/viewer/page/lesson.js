@@ -62,42 +62,26 @@ export function showDegrees(radians) {
   return `${signed(degrees(radians), 1)}°`;
 }
 
-// A step's contacts of one circle, taken apart: its velocity before and after each.
-//
-// The messages hold the velocity before the first and after the last. Between them each contact changes it by
-// impulse / mass along its normal, and the mass follows from the whole change. `mass` is what is used when
-// the changes cancel.
-export function takeApart({ circle, before, after, contacts }, mass = null) {
-  const first = [before.vx, before.vy];
-  const last = [after.vx, after.vy];
-  const pushes = contacts.map((c) => times([c.nx, c.ny], c.a === circle ? -c.impulse : c.impulse));
-  const sum = pushes.reduce(plus, [0, 0]);
-  const scale = pushes.reduce((total, push) => total + length(push), 0);
-  const change = minus(last, first);
-  const known = length(sum) > 1e-3 * scale && dot(change, sum) > 0 ? dot(sum, sum) / dot(change, sum) : mass;
-  let velocity = first;
-  return contacts.map((contact, index) => {
-    const isOwn = contact.a === circle;
-    const normal = unit(isOwn ? [contact.nx, contact.ny] : [-contact.nx, -contact.ny]);
-    const was = velocity;
-    if (index === contacts.length - 1) velocity = last;
-    else if (known) velocity = plus(was, times(pushes[index], 1 / known));
-    else if (contact.kind !== CIRCLE) velocity = reflectByAngles(was, normal);
-    return {
-      time: contact.time,
-      kind: contact.kind,
-      partner: isOwn ? contact.b : contact.a,
-      isLocked: contact.kind !== CIRCLE,
-      point: [contact.x, contact.y],
-      normal,
-      before: was,
-      after: velocity,
-      angles: bounceAngles(was, normal),
-      before_parts: parts(was, normal),
-      after_parts: parts(velocity, normal),
-      mass: known,
-    };
-  });
+// A recorded contact from the side of one of its two circles: the normal points from that one to the other.
+export function takeApart(contact, circle) {
+  const isOwn = contact.a === circle;
+  const normal = unit(isOwn ? [contact.nx, contact.ny] : [-contact.nx, -contact.ny]);
+  const body = isOwn ? 'a' : 'b';
+  const before = [contact[`${body}x0`], contact[`${body}y0`]];
+  const after = [contact[`${body}x1`], contact[`${body}y1`]];
+  return {
+    time: contact.time,
+    kind: contact.kind,
+    partner: isOwn ? contact.b : contact.a,
+    isLocked: contact.kind !== CIRCLE,
+    point: [contact.x, contact.y],
+    normal,
+    before,
+    after,
+    angles: bounceAngles(before, normal),
+    before_parts: parts(before, normal),
+    after_parts: parts(after, normal),
+  };
 }
 
 // When two circles first touch, seconds from now: the smaller root, in the form that keeps its digits.

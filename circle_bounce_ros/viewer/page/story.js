@@ -20,15 +20,12 @@ export class Story {
 
   hear(message) {
     if (message.circle !== this.circle) return;
-    const contacts = takeApart(message, this.mass);
-    this.mass = contacts[0]?.mass ?? this.mass;
-    this.waiting.push(...contacts);
+    this.waiting.push(...message.contacts.map((contact) => takeApart(contact, this.circle)));
     this.waiting.splice(0, this.waiting.length - WAITING);
   }
 
   // The scene starts again, or is another one.
   restart() {
-    this.mass = null; // kg: what the last contacts said
     this.last = null;
     this.waiting = [];
     this.path = []; // where the circle has been: {x, y, time}
