@@ -1,5 +1,6 @@
 """Random scenes of every kind that the engine must get right. Seeded; plain `random()` only."""
 
+import itertools
 import math
 import random
 
@@ -16,6 +17,7 @@ KINDS = (
     'fast',
     'dense',
     'sizes',
+    'seams',
 )
 
 
@@ -105,7 +107,27 @@ def random_scene(kind, seed):
         circles += place(rng, 110, [0.12], 5.7, taken=circles)
         circles += place(rng, 3, [0.4], 5.7, locked=True, taken=circles)
         return Scene(circles, regular_polygon(5 + seed % 3, 7.2, rng.random()))
+    if kind == 'seams':
+        # Sides in pieces of any length, order and direction, some twice; dividers end on them outside and inside.
+        walls = [piece for side in tilted for piece in in_pieces(rng, side, 12)]
+        inner = [Wall(side.start, (0.9 * side.start[0], 0.9 * side.start[1])) for side in tilted]
+        outer = [Wall(w.end, (1.5 * w.end[0], 1.5 * w.end[1])) for w in walls[::5]]
+        walls += [*inner, *outer]
+        rng.shuffle(walls)
+        return Scene(place(rng, 20, [0.7], 10.0), walls)
     raise AssertionError(kind)
+
+
+def in_pieces(rng, wall, count):
+    """Return walls that cover one in pieces of very different lengths, and one piece that overlaps others."""
+
+    def at(share):
+        return tuple(a + share * (b - a) for a, b in zip(wall.start, wall.end, strict=True))
+
+    cuts = sorted(10.0 ** (-6.0 * rng.random()) for _ in range(count - 1))
+    points = [wall.start, *(at(share) for share in cuts), wall.end]
+    pairs = [*itertools.pairwise(points), (points[count // 3], points[-2])]
+    return [Wall(*(pair if rng.random() < 0.5 else pair[::-1])) for pair in pairs]
 
 
 def two_levels(seed):

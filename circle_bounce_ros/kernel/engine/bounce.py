@@ -38,7 +38,7 @@ def bounce_off(world: World, i: int, time: float) -> None:
     circle.changes += 1
     if circle.kind == WALL:
         flat = world.flats[circle.partner]
-        other = flat.id
+        other = wall_at(world, flat, circle.x, circle.y)
         nx = flat.nx
         ny = flat.ny
         # From the circle to the wall: the way that the velocity goes.
@@ -56,6 +56,23 @@ def bounce_off(world: World, i: int, time: float) -> None:
         circle.vx, circle.vy = reflect_xy(circle.vx, circle.vy, nx, ny)
         after = circle.vx, circle.vy, 0.0, 0.0
         note(world, circle, other, circle.kind, nx, ny, circle.mass * push, before, after)
+
+
+def wall_at(world: World, flat: Record, x: float, y: float) -> int:
+    """Return the number of the wall that a circle at (x, y) touches with a flat."""
+    number: int = flat.id
+    low = flat.first_part
+    high = flat.end_part - 1
+    if low <= high:
+        along = (x - flat.x) * flat.ny - (y - flat.y) * flat.nx
+        while low < high:
+            middle = (low + high) // 2
+            if world.parts[middle].end < along:
+                low = middle + 1
+            else:
+                high = middle
+        number = world.parts[low].id
+    return number
 
 
 def note(

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from circle_bounce_ros.kernel.engine.cells import lay_out, scratch
 from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN
 from circle_bounce_ros.kernel.engine.records import (
-    FLAT,
     LOCKED,
     MOVING,
     NOTE,
@@ -22,7 +21,8 @@ from circle_bounce_ros.kernel.engine.records import (
     World,
     aligned_zeros,
 )
-from circle_bounce_ros.kernel.impact import NEVER, wall_frame
+from circle_bounce_ros.kernel.engine.walls import Walls, straighten
+from circle_bounce_ros.kernel.impact import NEVER
 from circle_bounce_ros.kernel.scene import Scene
 
 Array = NDArray[Any]
@@ -55,8 +55,9 @@ VERY_MANY = 16_384
 def build(scene: Scene, keep_log: bool) -> World:
     """Return the world of a scene at time zero, in arrays."""
     moving = _moving(scene)
-    posts, flats = _locked(scene)
-    grid = lay_out(moving, posts, flats, scene.moving_circles_collide)
+    walls = straighten(tuple(scene.walls))
+    posts = _posts(scene, walls)
+    grid = lay_out(moving, posts, walls.flats, scene.moving_circles_collide)
     count = len(moving)
     rounds = (count - 1).bit_length()
     leaf = 1 << rounds
@@ -71,7 +72,8 @@ def build(scene: Scene, keep_log: bool) -> World:
     return World(
         moving=moving,
         posts=posts,
-        flats=flats,
+        flats=walls.flats,
+        parts=walls.parts,
         tables=grid.tables,
         lists=grid.lists,
         reaches=grid.reaches,
@@ -129,22 +131,17 @@ def _along_a_curve(points: Array) -> Array:
     return np.argsort(key, kind='stable')
 
 
-def _locked(scene: Scene) -> tuple[Array, Array]:
+def _posts(scene: Scene, walls: Walls) -> Array:
     posts = [
         (*circle.position, circle.radius, LOCKED, index)
         for index, circle in enumerate(scene.circles)
         if circle.locked
     ]
-    ends: dict[tuple[float, float], int] = {}
-    for number, wall in enumerate(scene.walls):
-        ends.setdefault(wall.start, number)
-        ends.setdefault(wall.end, number)
-    posts += [(*end, 0.0, WALL_END, number) for end, number in ends.items()]
-    flats = [
-        (*wall.start, *wall_frame(*wall.start, *wall.end), number)
-        for number, wall in enumerate(scene.walls)
+    posts += [
+        (*end, 0.0, WALL_END, number)
+        for end, number in zip(walls.ends.tolist(), walls.end_numbers.tolist(), strict=True)
     ]
-    return np.array(posts, POST), np.array(flats, FLAT)
+    return np.array(posts, POST)
 
 
 def _typical_speed(moving: Array) -> float:

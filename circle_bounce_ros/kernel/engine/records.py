@@ -37,8 +37,15 @@ MOVING = np.dtype(
 # A locked circle, or the end of a wall as a circle of radius 0. The id is that of the circle or the wall.
 POST = np.dtype([('x', 'f8'), ('y', 'f8'), ('radius', 'f8'), ('kind', 'i8'), ('id', 'i8')])
 
-# The flat of a wall: where it starts, its unit normal (direction turned left), its length.
-FLAT = np.dtype([(name, 'f8') for name in ('x', 'y', 'nx', 'ny', 'length')] + [('id', 'i8')])
+# The flat of a wall, or of several in line: where it starts, its unit normal (direction turned left), its length. One
+# of several has a range of `world.parts`; the id is that of the wall, or the lowest.
+FLAT = np.dtype(
+    [(name, 'f8') for name in ('x', 'y', 'nx', 'ny', 'length')]
+    + [(name, 'i8') for name in ('id', 'first_part', 'end_part')]
+)
+
+# Up to where along its flat a wall is the one that is touched; the first such part counts.
+PART = np.dtype([('end', 'f8'), ('id', 'i8')])
 
 # What is locked in reach of a cell: ranges of `world.post_numbers` and `world.flat_numbers`.
 REACH = np.dtype([(name, 'i4') for name in ('first_post', 'end_post', 'first_flat', 'end_flat')])
@@ -76,6 +83,7 @@ LAYOUTS = {
     'Moving': MOVING,
     'Post': POST,
     'Flat': FLAT,
+    'Part': PART,
     'Reach': REACH,
     'Table': TABLE,
     'Note': NOTE,
@@ -105,6 +113,7 @@ class World(NamedTuple):
     moving: Any
     posts: Any
     flats: Any
+    parts: Any  # of flats that are several walls
     tables: Any  # of each level the residents, then of each level the guests
     lists: Any  # of each table, one after the other
     reaches: Any  # the first one is empty
