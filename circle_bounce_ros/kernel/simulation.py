@@ -70,8 +70,9 @@ class Simulation:
         time : float, s
             Not earlier than `.time`.
         at_most : int, optional
-            Stop early after so many steps of work (contacts and changes of cell), so that nobody waits
-            longer than they want to; call again to go on.
+            At least 1. Stop early after so many steps of work (contacts, plans and changes of cell), so that
+            nobody waits longer than they want to; call again to go on. The last step may be one of many cells:
+            up to 8,192 more.
 
         Returns
         -------
@@ -81,7 +82,7 @@ class Simulation:
         Raises
         ------
         ValueError
-            For a time before `.time`, NaN or infinite.
+            For a time before `.time`, NaN or infinite, or `at_most` below 1.
         EndlessContactsError
             For contacts without end at one instant; `.time` stands at it and the state can be read.
 
@@ -91,11 +92,14 @@ class Simulation:
             if not math.isfinite(time):
                 raise ValueError(f'time: must be finite, got {time}')
             raise ValueError(f'time: must not be before {self._time} s, got {time}')
+        if at_most is not None and not at_most >= 1:
+            raise ValueError(f'at_most: must be at least 1, got {at_most}')
         why = self._driver.run(time, at_most)
         if why == DONE:
             self._time = time
             return True
-        self._time = max(self._time, self._driver.reached)
+        # Never beyond what was asked for, by a rounding either.
+        self._time = min(max(self._time, self._driver.reached), time)
         if why == ENDLESS:
             raise EndlessContactsError(self._describe_crowd())
         return False

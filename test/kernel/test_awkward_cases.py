@@ -325,7 +325,7 @@ def test_contacts_without_end_are_an_error_and_never_a_hang():
     with pytest.raises(EndlessContactsError) as caught:
         simulation.advance_to(1.0)
     assert str(caught.value).startswith(
-        'circles[0] (stuck): contacts without end at 0 s, more than 1100 of them within '
+        'circles[0] (stuck): contacts without end at 0 s, more than 20100 of them within '
     )
     assert simulation.time == 0.0
     assert simulation.positions.tolist() == [[0.0, 0.5]]
@@ -333,12 +333,36 @@ def test_contacts_without_end_are_an_error_and_never_a_hang():
     assert simulation.velocities.tolist() == [[1.0, 1.0]]
 
 
+@pytest.mark.parametrize('miss', [1e-4, 1e-8, 1e-12, 0.0])
+@pytest.mark.parametrize('degrees', [10.0, 1.0, 0.1, 0.01])
+def test_a_circle_that_runs_into_a_wedge_comes_out_after_as_many_bounces_as_unfolding_tells(
+    degrees, miss
+):
+    """Unfolded at each wall the path is straight: it crosses a wall for each `degrees` of its turn about the apex."""
+    turn, opening, radius, far, until = 0.3, math.radians(degrees), 0.05, 1.0, 1.5
+    apex = radius / math.sin(opening / 2.0)  # of the centres, along the middle of the wedge
+
+    def place(distance, angle):
+        return distance * math.cos(angle + turn), distance * math.sin(angle + turn)
+
+    walls = [Wall((0.0, 0.0), place(apex + 3.0, angle)) for angle in (0.0, opening)]
+    start = 0.37 * opening
+    x, y = (a + b for a, b in zip(place(apex, opening / 2.0), place(far, start), strict=True))
+    velocity = place(1.0, start + math.pi - math.asin(miss / far))
+    scene = Scene([Circle((x, y), velocity, radius=radius)], walls)
+    simulation = Simulation(scene)
+    simulation.advance_to(until)
+    nearest = math.sqrt(far**2 - miss**2)
+    turned = math.atan2(nearest, miss) + math.atan2(until - nearest, miss)
+    assert simulation.contact_count == math.floor((start + turned) / opening)
+
+
 def test_contacts_without_end_survive_calls_in_slices():
     slot = [Wall((-5.0, 0.0), (5.0, 0.0)), Wall((-5.0, 1.0), (5.0, 1.0))]
     simulation = Simulation(Scene([Circle((0.0, 0.5), (0.0, 1.0), radius=0.5)], slot))
 
     def in_slices():
-        for _ in range(2000):
+        for _ in range(3000):
             simulation.advance_to(1.0, at_most=10)
 
     with pytest.raises(EndlessContactsError):

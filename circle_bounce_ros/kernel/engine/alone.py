@@ -1,7 +1,9 @@
 """
 A circle that moves alone, or circles that pass through each other: each is followed on its own, without a queue.
 
-Of the tournament only the top is used: the earliest time at which there is something to do.
+Nobody waits for anybody, so each circle goes to the time wanted before the next one is looked at. Of the tournament
+only the top is used: the earliest time at which there is something to do. Where the work has to be cut at a
+time that all circles have reached, the tournament tells whose contact is next.
 
 The same contacts at the same instants as `loop` would find, to the last digit.
 """
@@ -10,9 +12,17 @@ from __future__ import annotations
 
 from circle_bounce_ros.kernel.engine.bounce import bounce_off
 from circle_bounce_ros.kernel.engine.grid import list_number
-from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS, LOG_FULL, set_clock_back
+from circle_bounce_ros.kernel.engine.loop import (
+    BUDGET_SPENT,
+    DONE,
+    ENDLESS,
+    LOG_FULL,
+    is_endless,
+    set_clock_back,
+)
 from circle_bounce_ros.kernel.engine.plan import plan_cell, plan_locked
 from circle_bounce_ros.kernel.engine.records import DOWN, NOTHING, Record, World
+from circle_bounce_ros.kernel.engine.tournament import enter, enter_all
 from circle_bounce_ros.kernel.impact import NEVER
 
 
@@ -23,34 +33,37 @@ def run_alone(world: World, time: float) -> int:
     Returns
     -------
     int
-        DONE, LOG_FULL or ENDLESS, as `loop.run`.
+        DONE or LOG_FULL, as `loop.run`; ENDLESS: contacts without end at one instant, which other circles have
+        not reached or have gone beyond.
 
     """
     state = world.state[0]
     until = time - state.epoch
     if world.tree_time[1] > until:
         return DONE
+    state.in_order = 0
     while True:
         earliest = NEVER
         for i in range(len(world.moving)):
             circle = world.moving[i]
-            crowd = 0
-            crowd_ends = -NEVER
+            crowd = world.crowds[i]
+            count = crowd.count
+            ends = crowd.ends
             while circle.time_of_hit <= until and circle.time_of_hit < world.span:
                 now = circle.time_of_hit
                 if circle.kind != NOTHING:
                     if state.keep_log and state.notes == len(world.log):
+                        crowd.count = count
+                        crowd.ends = ends
                         return LOG_FULL
-                    if now > crowd_ends:
-                        crowd_ends = now + world.crowd_span
-                        crowd = 0
-                    crowd += 1
-                    if crowd > world.patience:
-                        state.time = now
-                        world.tree_who[1] = i
+                    # As `is_endless`, in numbers of this function: a tenth faster.
+                    if now > ends:
+                        ends = now + world.crowd_span
+                        count = 0
+                    count += 1
+                    if count > world.patience:
                         return ENDLESS
                     bounce_off(world, i, now)
-                state.events += 1
                 follow(world, circle, now)
             earliest = min(earliest, circle.time_of_hit)
         if earliest > until:
@@ -60,12 +73,52 @@ def run_alone(world: World, time: float) -> int:
         until = time - state.epoch
 
 
+def run_alone_in_order(world: World, time: float, at_most: int) -> int:
+    """
+    Carry out all contacts up to and including a time in the order of time, but about `at_most` steps of work.
+
+    Returns
+    -------
+    int
+        DONE, BUDGET_SPENT, LOG_FULL or ENDLESS, as `loop.run`.
+
+    """
+    state = world.state[0]
+    last = state.events + at_most
+    until = time - state.epoch
+    if state.in_order == 0 and world.tree_time[1] <= until:
+        enter_all(world)
+        state.in_order = 1
+    while world.tree_time[1] <= until:
+        if state.events >= last:
+            return BUDGET_SPENT
+        i = world.tree_who[1]
+        now = world.tree_time[1]
+        if now >= world.span:
+            set_clock_back(world, now)
+            until = time - state.epoch
+            continue
+        circle = world.moving[i]
+        if circle.kind != NOTHING:
+            if state.keep_log and state.notes == len(world.log):
+                return LOG_FULL
+            if is_endless(world, i, now):
+                return ENDLESS
+            bounce_off(world, i, now)
+        state.time = now
+        follow(world, circle, now)
+        enter(world, i, circle.time_of_hit)
+    return DONE
+
+
 def follow(world: World, circle: Record, now: float) -> None:
     """Make the plan of a circle: follow it from cell to cell until something locked is found."""
     circle.time_of_hit = NEVER
     circle.kind = NOTHING
     table = world.tables[circle.level]
+    steps = 0
     while True:
+        steps += 1
         plan_locked(world, circle)
         plan_cell(world, circle, now)
         if circle.time_of_hit <= circle.time_of_cell:
@@ -79,3 +132,4 @@ def follow(world: World, circle: Record, now: float) -> None:
             break
         circle.cell = list_number(table, circle.column, circle.row)
     circle.time_of_hit = max(circle.time_of_hit, now)
+    world.state[0].events += steps

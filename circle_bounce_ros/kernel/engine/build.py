@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from circle_bounce_ros.kernel.engine.cells import lay_out, scratch
 from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN
 from circle_bounce_ros.kernel.engine.records import (
+    CROWD,
     LOCKED,
     MOVING,
     NOTE,
@@ -34,9 +35,10 @@ Array = NDArray[Any]
 RADII_PER_SPAN = 1024.0
 
 # More than PATIENCE + PATIENCE_PER_CIRCLE n contacts while nothing travels further than CROWD_RADII radii are
-# contacts without end. Less patience could refuse a long chain of simultaneous contacts. Of circles that pass through
-# each other each is counted on its own, n = 1, and never beyond a full block of the log.
-PATIENCE = 1000
+# contacts without end. Less patience could refuse a long chain of simultaneous contacts, or the 180 / a bounces of a
+# circle that runs into a wedge of a degrees: these are 18,000 at 0.01. More: a scene without end is found later. Of
+# circles that pass through each other each is counted on its own, n = 1.
+PATIENCE = 20_000
 PATIENCE_PER_CIRCLE = 100
 CROWD_RADII = 1e-9
 
@@ -63,8 +65,10 @@ def build(scene: Scene, keep_log: bool) -> World:
     leaf = 1 << rounds
     tree_time, tree_who = _tournament(count, leaf)
     state = np.zeros(1, STATE)
-    state['crowd_ends'] = -NEVER
     state['keep_log'] = keep_log
+    state['in_order'] = True
+    crowds = np.zeros(count if not scene.moving_circles_collide else 1, CROWD)
+    crowds['ends'] = -NEVER
     travel = _typical_speed(moving) / float(moving['radius'].min())
     # A cell of home may end a width beyond it; who is away must be a diameter further.
     widest = 2.0 * float(moving['radius'].max())
@@ -86,6 +90,7 @@ def build(scene: Scene, keep_log: bool) -> World:
         tree_who=tree_who,
         log=np.zeros(LOG_BLOCK, NOTE),
         state=state,
+        crowds=crowds,
         leaf=leaf,
         rounds=rounds,
         looks_ahead=count > VERY_MANY,

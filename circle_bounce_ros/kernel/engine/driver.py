@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.engine import build, cells, modes
-from circle_bounce_ros.kernel.engine.loop import BUDGET_SPENT, DONE, ENDLESS, LIST_FULL, LOG_FULL
+from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS, LIST_FULL, LOG_FULL
 from circle_bounce_ros.kernel.engine.records import NOTE, World
 from circle_bounce_ros.kernel.scene import Scene
 
@@ -68,9 +68,31 @@ class Driver(ABC):
         """Carry out all events up to a time, or about `at_most`; return DONE, BUDGET_SPENT or ENDLESS."""
 
     @property
-    @abstractmethod
     def reached(self) -> float:
-        """The time up to which everything has been done, s."""
+        """The time up to which everything has been done where it was less than what was wanted, s."""
+        return float(self.get('epoch') + self.get('time'))
+
+    def _run_in_order(self, entry: modes.Entry, time: float, at_most: int | None) -> int:
+        """Run event by event, and make room for what is full."""
+        budget = WITHOUT_END if at_most is None else int(min(at_most, WITHOUT_END))
+        # Asked for only if it matters: among few circles the asking would be half of the work.
+        last = 0 if at_most is None else self.get('events') + budget
+        while (why := entry(self.world, time, budget)) in (LOG_FULL, LIST_FULL):
+            if why == LOG_FULL:
+                self._empty_log()
+            else:
+                self._make_room()
+            if at_most is not None:
+                budget = last - self.get('events')
+        if why == ENDLESS:
+            self._note_crowded()
+        return why
+
+    def _make_room(self) -> None:
+        arrays = self.world
+        if not self._mode.takes_arrays:
+            arrays = modes.to_arrays(self.world, self._types)
+        self._enter(cells.with_more_room(arrays))
 
     def get(self, name: str) -> Any:
         """Return a number of the world's state."""
@@ -131,69 +153,37 @@ class Driver(ABC):
 class Together(Driver):
     """Circles that hit each other: event by event, in order of time."""
 
-    @property
-    def reached(self) -> float:
-        return float(self.get('epoch') + self.get('time'))
-
     def run(self, time: float, at_most: int | None) -> int:
-        budget = WITHOUT_END if at_most is None else at_most
-        # Asked for only if it matters: among few circles the asking would be half of the work.
-        last = 0 if at_most is None else self.get('events') + at_most
-        while (why := self._mode.run(self.world, time, budget)) in (LOG_FULL, LIST_FULL):
-            if why == LOG_FULL:
-                self._empty_log()
-            else:
-                self._make_room()
-            if at_most is not None:
-                budget = last - self.get('events')
-        if why == ENDLESS:
-            self._note_crowded()
-        return why
-
-    def _make_room(self) -> None:
-        arrays = self.world
-        if not self._mode.takes_arrays:
-            arrays = modes.to_arrays(self.world, self._types)
-        self._enter(cells.with_more_room(arrays))
+        return self._run_in_order(self._mode.run, time, at_most)
 
 
 class Alone(Driver):
-    """Circles that hit nobody who moves: each followed on its own, where steps of work are in no order of time."""
+    """Circles that hit nobody who moves: each followed on its own, in order of time only where the work is cut."""
 
     def __init__(self, scene: Scene, keep_log: bool, mode: modes.Mode) -> None:
         super().__init__(scene, keep_log, mode)
-        self._reached = 0.0
-
-    @property
-    def reached(self) -> float:
-        return self._reached
+        self._done = 0.0
 
     def run(self, time: float, at_most: int | None) -> int:
-        until = time if at_most is None else min(time, self._about(at_most))
-        while (why := self._mode.run_alone(self.world, until)) == LOG_FULL:
+        if at_most is not None:
+            why = self._run_in_order(self._mode.run_alone_in_order, time, at_most)
+            self._done = time if why == DONE else max(self._done, self.reached)
+            return why
+        while (why := self._mode.run_alone(self.world, time)) == LOG_FULL:
             self._empty_log()
         if why == ENDLESS:
-            self._note_crowded()
-            instant = float(self.get('epoch') + self.get('time'))
-            self._go_back_to(max(self._reached, instant - self.world.crowd_span))
-            self._reached = max(self._reached, instant)
-            return ENDLESS
-        self._reached = until
-        return DONE if until == time else BUDGET_SPENT
+            self._go_back()
+            return self._run_in_order(self._mode.run_alone_in_order, time, None)
+        self._done = time
+        return why
 
-    def _about(self, at_most: int) -> float:
-        """Return a time up to which there is about so much to do: to do less is to go less far."""
-        # A circle that travels a radius seldom has more than one contact.
-        radii = max(1.0, at_most / len(self.world.moving))
-        return self._reached + radii * self.world.span / build.RADII_PER_SPAN
-
-    def _go_back_to(self, time: float) -> None:
-        """Undo what single circles have done beyond a time, by going there once more from the start."""
+    def _go_back(self) -> None:
+        """Undo what single circles have done beyond the time that all have reached, by going there from the start."""
         notes = self.drain()
-        self._notes = [notes[notes['time'] <= time]]
+        self._notes = [notes[notes['time'] <= self._done]]
         keep_log = self.get('keep_log')
         self._enter(build.build(self._scene, keep_log=False))
-        self._mode.run_alone(self.world, time)
+        self._mode.run_alone(self.world, self._done)
         self.set('keep_log', keep_log)
 
     def drain(self) -> Array:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from circle_bounce_ros.kernel.engine.ahead import look_ahead
 from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide
 from circle_bounce_ros.kernel.engine.grid import cross
@@ -48,7 +46,7 @@ def run(world: World, time: float, at_most: int) -> int:
                 continue
             if state.keep_log and state.notes == len(world.log):
                 return LOG_FULL
-            if is_endless(world, now):
+            if is_endless(world, 0, now):
                 return ENDLESS
             if circle.kind == CIRCLE:
                 partner = circle.partner
@@ -75,14 +73,14 @@ def is_contact(world: World, circle: Record) -> bool:
     return holds
 
 
-def is_endless(world: World, now: float) -> bool:
-    """Count contacts that come too close upon each other."""
-    state = world.state[0]
-    if now > state.crowd_ends:
-        state.crowd_ends = now + world.crowd_span
-        state.crowd = 0
-    state.crowd += 1
-    endless: bool = state.crowd > world.patience
+def is_endless(world: World, number: int, now: float) -> bool:
+    """Count the contacts of a crowd that come close upon each other."""
+    crowd = world.crowds[number]
+    if now > crowd.ends:
+        crowd.ends = now + world.crowd_span
+        crowd.count = 0
+    crowd.count += 1
+    endless: bool = crowd.count > world.patience
     return endless
 
 
@@ -95,10 +93,11 @@ def set_clock_back(world: World, now: float) -> None:
     the epoch stays exact.
     """
     state = world.state[0]
-    back = math.floor(now / world.span) * world.span
+    back = now - now % world.span  # exact, and no whole number that could be too large
     state.epoch += back
     state.time = max(state.time - back, 0.0)
-    state.crowd_ends -= back
+    for number in range(len(world.crowds)):
+        world.crowds[number].ends -= back
     # A cell that was entered between the new zero and now stays: nothing changes course in between.
     for i in range(len(world.moving)):
         move_to(world.moving[i], back)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.engine import compilation, records
-from circle_bounce_ros.kernel.engine.alone import run_alone
+from circle_bounce_ros.kernel.engine.alone import run_alone, run_alone_in_order
 from circle_bounce_ros.kernel.engine.build import build
 from circle_bounce_ros.kernel.engine.loop import run
 from circle_bounce_ros.kernel.engine.motion import read_positions
@@ -27,16 +27,21 @@ from circle_bounce_ros.kernel.scene import Circle, Scene
 FEW = 4
 
 
+# It carries out the events of a world up to a time, but so many at most.
+Entry = Callable[[World, float, int], int]
+
+
 class Mode(NamedTuple):
     """The engine's entries, and whether they take a world of arrays or one of objects."""
 
-    run: Callable[[World, float, int], int]
+    run: Entry
     run_alone: Callable[[World, float], int]
+    run_alone_in_order: Entry
     read_positions: Callable[[Any, Any, float, NDArray[np.float64]], None]
     takes_arrays: bool
 
 
-PLAIN = Mode(run, run_alone, read_positions, takes_arrays=False)
+PLAIN = Mode(run, run_alone, run_alone_in_order, read_positions, takes_arrays=False)
 
 
 @lru_cache(maxsize=1)
@@ -50,8 +55,10 @@ def compiled() -> Mode:
         Where numba is not installed.
 
     """
-    together, alone, read = compilation.compile_entries(run, run_alone, read_positions)
-    return Mode(together, alone, read, takes_arrays=True)
+    together, alone, in_order, read = compilation.compile_entries(
+        run, run_alone, run_alone_in_order, read_positions
+    )
+    return Mode(together, alone, in_order, read, takes_arrays=True)
 
 
 def compile_ahead() -> bool:
@@ -73,6 +80,7 @@ def compile_ahead() -> bool:
             compiled().run(world, 1.0, 100)
         else:
             compiled().run_alone(world, 1.0)
+            compiled().run_alone_in_order(world, 2.0, 100)
         compiled().read_positions(world.moving, world.state, 1.0, np.empty((2, 2)))
     compilation.say_ready()
     return True

@@ -71,9 +71,15 @@ NOTE = np.dtype(
 
 # All times in the world count from the epoch: clocks are set back before they grow beyond the span.
 STATE = np.dtype(
-    [(name, 'f8') for name in ('epoch', 'time', 'crowd_ends')]
-    + [(name, 'i8') for name in ('events', 'contacts', 'crowd', 'notes', 'away', 'keep_log')]
+    [(name, 'f8') for name in ('epoch', 'time')]
+    + [(name, 'i8') for name in ('events', 'contacts', 'notes', 'away', 'keep_log')]
+    + [
+        ('in_order', 'i8')
+    ]  # whether the tournament holds the plans of circles that are followed alone
 )
+
+# Contacts that come close upon each other: how many there have been, and when the counting starts again.
+CROWD = np.dtype([('count', 'i8'), ('ends', 'f8')])
 
 
 # One record of any of these, in either mode: see `modes`.
@@ -88,6 +94,7 @@ LAYOUTS = {
     'Table': TABLE,
     'Note': NOTE,
     'State': STATE,
+    'Crowd': CROWD,
 }
 
 CACHE_LINE = 64
@@ -126,6 +133,7 @@ class World(NamedTuple):
     tree_who: Any
     log: Any
     state: Any  # one record: what changes and is no array
+    crowds: Any  # one for all, or one for each circle that is followed alone
     leaf: int  # the first leaf of the tournament
     rounds: int  # matches from a leaf to the top
     looks_ahead: bool  # in compiled code: see `ahead`

@@ -11,6 +11,21 @@ from __future__ import annotations
 from circle_bounce_ros.kernel.engine.records import World
 
 
+def enter_all(world: World) -> None:
+    """Give all circles the times of their contacts, and play all matches."""
+    times = world.tree_time
+    who = world.tree_who
+    for i in range(len(world.moving)):
+        times[world.leaf + i] = world.moving[i].time_of_hit
+        who[world.leaf + i] = i
+    for node in range(world.leaf - 1, 0, -1):
+        winner = 2 * node
+        if times[winner + 1] < times[winner]:
+            winner += 1
+        times[node] = times[winner]
+        who[node] = who[winner]
+
+
 def enter(world: World, i: int, time: float) -> None:
     """Give circle i a time and play its matches again, up to the root."""
     times = world.tree_time
