@@ -26,9 +26,13 @@ LARGEST_FILE = 10_000_000  # bytes
 # The schema needs 6. Python's own stack ends near 1,000.
 DEEPEST_NESTING = 20
 
+# As long as a text takes the parser in Python a second or two.
+LONGEST_PARSED_AGAIN = 250_000  # characters
+
 FastLoader: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 
 _UNPRINTABLE = re.compile('[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]')
+_SURROGATE = re.compile('[\ud800-\udfff]')
 _INTEGER = re.compile('[-+]?[0-9]+')
 _FLOAT = re.compile(r'[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?')
 _NOT_FINITE = re.compile(r'[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)')
@@ -66,17 +70,37 @@ def parse(text: str) -> Any:
 
     """
     try:
-        return _document(yaml.parse(text, Loader=FastLoader))
-    except yaml.YAMLError:
-        pass
-    # The parser in C is 18 times faster but words its errors differently: the one in Python speaks for both.
+        return _document(_events(FastLoader(text)))
+    except yaml.YAMLError as error:
+        fault = error
+    # The parser in C is 18 times faster but words its errors differently: the one in Python speaks for both, where
+    # nobody has to wait for it.
+    if len(text) <= LONGEST_PARSED_AGAIN:
+        try:
+            return _document(_events(yaml.SafeLoader(text)))
+        except yaml.YAMLError as error:
+            fault = error
+    raise _sentence(fault)
+
+
+def _events(loader: Any) -> Iterator[Any]:
+    """Yield what a parser finds; what goes wrong in it is a YAMLError."""
     try:
-        return _document(yaml.parse(text, Loader=yaml.SafeLoader))
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        place = f'line {mark.line + 1}, column {mark.column + 1}' if mark else ''
-        problem = error.problem or error.context
-        raise SceneError(place, f'must be valid YAML, got an error: {problem}') from None
+        while loader.check_event():
+            yield loader.get_event()
+    except (ValueError, OverflowError) as error:
+        # The parser in Python trusts the digits of an escape ("\\U00110000") and of a version (%YAML 1.999...).
+        problem = 'an escape or a version is out of range'
+        raise yaml.MarkedYAMLError(problem=problem, problem_mark=loader.get_mark()) from error
+    finally:
+        loader.dispose()
+
+
+def _sentence(error: yaml.YAMLError) -> SceneError:
+    mark = getattr(error, 'problem_mark', None) or getattr(error, 'context_mark', None)
+    place = f'line {mark.line + 1}, column {mark.column + 1}' if mark else ''
+    problem = getattr(error, 'problem', None) or getattr(error, 'context', None) or error
+    return SceneError(place, f'must be valid YAML, got an error: {problem}')
 
 
 def _bytes(path: Path) -> bytes:
@@ -139,7 +163,7 @@ def _node(event: Any, events: Iterator[Any], place: str, depth: int) -> Any:
     if event.tag is not None:
         raise SceneError(place, f'must have no YAML tag, got {shown(event.tag)}')
     if isinstance(event, yaml.ScalarEvent):
-        return _plain(event.value, place) if event.implicit[0] else event.value
+        return _plain(event.value, place) if event.implicit[0] else _quoted(event.value, place)
     if depth == DEEPEST_NESTING:
         raise SceneError('', f'must be nested at most {DEEPEST_NESTING} deep, got more')
     if isinstance(event, yaml.SequenceStartEvent):
@@ -159,7 +183,7 @@ def _mapping(events: Iterator[Any], place: str, depth: int) -> dict[str, Any]:
     while not isinstance(event := next(events), yaml.MappingEndEvent):
         if not isinstance(event, yaml.ScalarEvent):
             raise SceneError(place, 'must have words for keys, got a list, a mapping or an alias')
-        key = event.value
+        key = _quoted(event.value, place)
         inner = inside(place, key)
         if key in items:
             raise SceneError(inner, f'must be given once, got it again on line {_line(event)}')
@@ -181,6 +205,13 @@ def _plain(text: str, place: str) -> Any:
         if not math.isfinite(number):
             raise SceneError(place, f'must be finite, got {shortened(text)}')
         return number
+    return text
+
+
+def _quoted(text: str, place: str) -> str:
+    """Return a text in which escapes may have been; half a character fits into no file and no message."""
+    if not text.isascii() and (half := _SURROGATE.search(text)):
+        raise SceneError(place, f'must be Unicode text, got {half[0]!r}')
     return text
 
 

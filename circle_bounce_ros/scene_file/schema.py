@@ -8,11 +8,12 @@ unit of a number.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any
 
 from jsonschema import Draft202012Validator, ValidationError
+from jsonschema.validators import extend
 
 from circle_bounce_ros.installation import share_directory
 from circle_bounce_ros.kernel import SceneError
@@ -50,10 +51,42 @@ def check(data: Any) -> None:
         raise SceneError(place, problem)
 
 
+def _first_faulty_item(
+    validator: Any, schema: Any, instance: Any, _: Any
+) -> Iterator[ValidationError]:
+    """Yield the errors of the first item that has some: a long list of mistakes is one mistake."""
+    if isinstance(instance, list):
+        yield from _first_faulty(validator, ((i, item, schema) for i, item in enumerate(instance)))
+
+
+def _first_faulty_property(
+    validator: Any, schemas: Any, instance: Any, _: Any
+) -> Iterator[ValidationError]:
+    """Yield the errors of the first property, in the order of the file, that has some."""
+    if isinstance(instance, dict):
+        known = ((key, value, schemas[key]) for key, value in instance.items() if key in schemas)
+        yield from _first_faulty(validator, known)
+
+
+def _first_faulty(
+    validator: Any, parts: Iterable[tuple[str | int, Any, Any]]
+) -> Iterator[ValidationError]:
+    for key, value, schema in parts:
+        if errors := list(validator.descend(value, schema, path=key)):
+            yield from errors
+            return
+
+
+# jsonschema itself collects every error of a file, and of a long list there may be a million.
+_Validator: Any = extend(  # type: ignore[no-untyped-call]
+    Draft202012Validator, {'items': _first_faulty_item, 'properties': _first_faulty_property}
+)
+
+
 @lru_cache(maxsize=1)
-def _validator() -> Draft202012Validator:
+def _validator() -> Any:
     path = share_directory() / 'config' / 'scene.schema.json'
-    return Draft202012Validator(json.loads(path.read_text(encoding='utf-8')))
+    return _Validator(json.loads(path.read_text(encoding='utf-8')))
 
 
 def _rank(error: ValidationError, data: Any) -> tuple[list[int], int, str]:

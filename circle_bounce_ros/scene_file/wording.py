@@ -32,4 +32,4 @@ def shortened(text: str) -> str:
 
 
 def _word(key: str) -> str:
-    return key if key.isidentifier() else shown(key)
+    return shortened(key) if key.isidentifier() else shown(key)

@@ -24,6 +24,26 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
         "line 2, column 1: must be valid YAML, got an error: found character '\\t' that "
         'cannot start any token',
     ),
+    'escape_beyond_unicode': (
+        'circles: [{name: "\\U00110000", position: [0, 0], radius: 0.1}]\n',
+        'line 1, column 21: must be valid YAML, got an error: an escape or a version is out of range',
+    ),
+    'escape_beyond_c': (
+        '"\\UFFFFFFFF": 1\n',
+        'line 1, column 4: must be valid YAML, got an error: an escape or a version is out of range',
+    ),
+    'half_a_character': (
+        'circles: []\ndescription: "\\ud83d"\n',
+        "description: must be Unicode text, got '\\ud83d'",
+    ),
+    'half_a_character_as_key': (
+        'circles: [{"\\udc00": 1}]\n',
+        "circles[0]: must be Unicode text, got '\\udc00'",
+    ),
+    'long_version': (
+        '%YAML 1.' + '9' * 5000 + '\n---\n' + GOOD_CIRCLE,
+        'line 1, column 9: must be valid YAML, got an error: an escape or a version is out of range',
+    ),
     'two_documents': (
         GOOD_CIRCLE + '---\n' + GOOD_CIRCLE,
         'must be one YAML document, got a second one on line 2',
@@ -79,6 +99,11 @@ BAD_FILES: dict[str, tuple[str | bytes, str]] = {
     'unprintable_key': (
         GOOD_CIRCLE + '"a\\nb": 1\n',
         "'a\\nb': must be one of the keys description, circles, walls, groups, "
+        'moving_circles_collide, restart_after, seed, got an unknown key',
+    ),
+    'long_key': (
+        f'? {"k" * 2000}\n: 1\n',
+        f'{"k" * 57}...: must be one of the keys description, circles, walls, groups, '
         'moving_circles_collide, restart_after, seed, got an unknown key',
     ),
     'circles_a_mapping': (

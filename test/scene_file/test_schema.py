@@ -6,6 +6,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from circle_bounce_ros.installation import share_directory
+from circle_bounce_ros.kernel import SceneError
 from circle_bounce_ros.scene_file import schema as schema_module
 
 SCHEMA = json.loads(
@@ -72,3 +73,39 @@ def test_defaults_obey_their_own_rules(place):
     part = PARTS[place]
     if 'default' in part:
         Draft202012Validator(part).validate(part['default'])
+
+
+COUNT = 200
+BOX = {'min': [0, 0], 'max': [1, 1]}
+KEYS = {f'k{i}': 1 for i in range(COUNT)}
+LONG_MISTAKES = {
+    'numbers for circles': {'circles': [1] * COUNT},
+    'circles of nothing': {'circles': [{}] * COUNT},
+    'keys of the file': KEYS,
+    'keys of a circle': {'circles': [KEYS]},
+    'keys of circles': {'circles': [{'a': 1, 'b': 2}] * COUNT},
+    'coordinates': {'circles': [{'radius': 1, 'position': ['x'] * COUNT}]},
+    'half walls': {'circles': [], 'walls': [{'start': [5, 5]}] * COUNT},
+    'corners': {'circles': [], 'walls': [{'polygon': [[1]] * COUNT}]},
+    'radii': {'groups': [{'count': 1, 'region': BOX, 'radius': ['x'] * COUNT}]},
+    'groups': {'groups': ['x'] * COUNT},
+    'everywhere': {'circles': [1] * COUNT, 'walls': [1] * COUNT, 'groups': [1] * COUNT},
+}
+
+
+@pytest.mark.parametrize('data', LONG_MISTAKES.values(), ids=LONG_MISTAKES)
+def test_a_mistake_made_many_times_is_looked_at_once(data):
+    errors = list(schema_module._validator().iter_errors(data))
+    # One for each rule that the first faulty thing on each level breaks.
+    assert 1 <= len(errors) <= 6
+    # What all errors there are would have come to.
+    assert len(errors) <= len(list(Draft202012Validator(SCHEMA).iter_errors(data)))
+
+
+@pytest.mark.parametrize('data', LONG_MISTAKES.values(), ids=LONG_MISTAKES)
+def test_the_mistake_that_is_told_is_the_first_of_all_that_there_are(data):
+    errors = list(Draft202012Validator(SCHEMA).iter_errors(data))
+    first = schema_module._sentence(min(errors, key=lambda e: schema_module._rank(e, data)))
+    with pytest.raises(SceneError) as refused:
+        schema_module.check(data)
+    assert (refused.value.place, refused.value.problem) == first
