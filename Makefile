@@ -57,7 +57,7 @@ export NOTICE
 
 run: .venv
 	@printf '%s\n' "$$NOTICE"
-	@exec $(BIN)/python -S tools/run.py --ros-args $(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(PORT),-p 'port:=$(PORT)') $(ARGS)
+	@exec $(BIN)/python -S tools/run.py --ros-args $(if $(SCENE),-p 'scene:=$(SCENE)') $(if $(PORT),-p 'bounce_viewer:port:=$(PORT)') $(ARGS)
 
 listen: .venv
 	@exec $(BIN)/python examples/listen.py $(ARGS)

@@ -73,7 +73,7 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            'bounce_node = circle_bounce_ros.ros.node:main',
+            'bounce_node = circle_bounce_ros.ros.main:main',
             'bounce_record = circle_bounce_ros.offline.commands:record_main',
             'bounce_plot = circle_bounce_ros.offline.commands:plot_main',
             'bounce_sweep = circle_bounce_ros.offline.commands:sweep_main',

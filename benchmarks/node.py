@@ -157,7 +157,7 @@ def watch(scene: str, rate: float, topics: dict[str, str], seconds: float) -> di
 def running_node(scene: Path, rate: float) -> Iterator[subprocess.Popen[bytes]]:
     """Run the node; it must end well, too."""
     options = ['-p', f'scene:={scene}', '-p', f'rate:={rate}', '--log-level', 'warn']
-    command = [sys.executable, '-m', 'circle_bounce_ros.ros.node', '--ros-args', *options]
+    command = [sys.executable, '-m', 'circle_bounce_ros.ros.main', '--ros-args', *options]
     node = subprocess.Popen(command, env={**PROGRAMS['bounce_node'], **os.environ})
     try:
         yield node

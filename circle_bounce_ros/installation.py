@@ -47,6 +47,30 @@ def _share_candidates() -> Iterator[Path]:
             yield Path(prefix) / 'share' / PACKAGE
 
 
+def missing_package(error: ModuleNotFoundError, extra: str) -> str:
+    """
+    Return what to install where a package that only some parts need is not there, in one sentence.
+
+    Parameters
+    ----------
+    error : ModuleNotFoundError
+    extra : str
+        The extra of setup.py that has the package.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Again, when the package is our own: a broken install.
+
+    """
+    if error.name is None or error.name.partition('.')[0] == PACKAGE:
+        raise error
+    pip = f"in a virtual environment, in a clone of {PACKAGE}: pip install '.[{extra}]'"
+    if extra == 'ros':
+        pip = f'install ROS 2 Jazzy with apt and source it, or {pip}'
+    return f'needs {error.name}, which is not installed; {pip}'
+
+
 def child_environment(**changes: str) -> dict[str, str]:
     """
     Return the environment for a child process, with changes, without what the ROS wheels leave behind.

@@ -21,6 +21,7 @@ PROGRAMS = {
     'bounce_viewer': {},
 }
 PATIENCE = 10.0  # s, for both to end
+ENDING = (signal.SIGINT, signal.SIGTERM)
 ENDED_BY_US = (0, -signal.SIGINT, 128 + signal.SIGINT)
 
 
@@ -30,12 +31,14 @@ class Asked(Exception):
 
 def main(arguments: list[str]) -> int:
     folder = Path(sys.executable).parent
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (*ENDING, signal.SIGHUP):
         signal.signal(number, ask)
     children: list[subprocess.Popen[bytes]] = []
     try:
+        signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
         for program, environment in PROGRAMS.items():
-            # In sessions of their own, so that a Ctrl-C reaches each once: from here.
+            # In sessions of their own, so that a Ctrl-C reaches each once: from here. Blocked until they are ready for
+            # it: what comes earlier waits for them.
             children.append(
                 subprocess.Popen(
                     [str(folder / program), *arguments],
@@ -43,12 +46,13 @@ def main(arguments: list[str]) -> int:
                     start_new_session=True,
                 )
             )
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
         while all(child.poll() is None for child in children):
             time.sleep(0.1)
         status = next(child.returncode for child in children if child.returncode is not None)
     except Asked:
         status = None
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (*ENDING, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     statuses = [end(child) for child in children]
     if status is None:

@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable
 from importlib import import_module
 
+from circle_bounce_ros.installation import missing_package
+
 PACKAGE = 'circle_bounce_ros'
 
 
@@ -28,12 +30,6 @@ def _run(command: str, module: str) -> int:
     try:
         main: Callable[[], int] = import_module(module).main
     except ModuleNotFoundError as error:
-        if error.name is None or error.name.partition('.')[0] == PACKAGE:
-            raise
-        print(
-            f'{command}: needs {error.name}, which is not installed; '
-            f"in a clone of {PACKAGE}: pip install '.[offline]'",
-            file=sys.stderr,
-        )
+        print(f'{command}: {missing_package(error, "offline")}', file=sys.stderr)
         return 1
     return main()

@@ -41,6 +41,8 @@ class Facts(NamedTuple):
     time_scale : float
     waits_for_clock : bool
         It follows an outside clock that has not been heard yet.
+    failure : str
+        Why the simulation cannot go on; empty when it can.
 
     """
 
@@ -49,6 +51,7 @@ class Facts(NamedTuple):
     seed: int | None
     time_scale: float
     waits_for_clock: bool
+    failure: str
 
 
 class Diagnostics:
@@ -131,6 +134,8 @@ class Diagnostics:
         message.header.stamp = Time(sec=seconds, nanosec=nanoseconds)
         status = DiagnosticStatus(name=self._name, hardware_id='')
         status.level = DiagnosticStatus.WARN if problem else DiagnosticStatus.OK
+        if facts.failure:
+            status.level = DiagnosticStatus.ERROR
         status.message = problem or ('paused' if facts.paused else 'running')
         status.values = [
             KeyValue(key=key, value=value) for key, value in self._values(facts, runner).items()
@@ -140,6 +145,8 @@ class Diagnostics:
 
     def _problem(self, facts: Facts) -> str:
         """Return what is wrong, in words that stay the same while it is; empty when all is well."""
+        if facts.failure:
+            return facts.failure
         if facts.waits_for_clock:
             return 'waiting for /clock: use_sim_time is true and no time has come yet'
         if self._dropped + self._dropped_before > 0:

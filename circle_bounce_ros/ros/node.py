@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 import gc
-import signal
-import sys
 import threading
 import time
 from collections.abc import Sequence
-from typing import Any
 
 import rclpy
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
+from rclpy.exceptions import InvalidTopicNameException
 from rclpy.executors import ExternalShutdownException
-from rclpy.impl.implementation_singleton import rclpy_implementation
-from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
-from circle_bounce_ros.encoding.topics import Moment
-from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError
+from circle_bounce_ros.base_node import (
+    RCL_ERRORS,
+    BaseExecutor,
+    BaseNode,
+    ParameterError,
+    one_line,
+)
+from circle_bounce_ros.encoding.topics import TIME, Moment
+from circle_bounce_ros.kernel import Scene, SceneError
 from circle_bounce_ros.ros.compiling import BackgroundCompiler
 from circle_bounce_ros.ros.diagnostics import Diagnostics, Facts
-from circle_bounce_ros.ros.parameters import ParameterError, Parameters
+from circle_bounce_ros.ros.main import PARAMETERS
+from circle_bounce_ros.ros.parameters import Parameters
 from circle_bounce_ros.ros.publishers import Publishers
 from circle_bounce_ros.ros.runner import Runner
 from circle_bounce_ros.ros.ticker import Ticker
 from circle_bounce_ros.schedule.schedules import ClockSchedule, Tick, WallSchedule
 from circle_bounce_ros.schedule.times import SECOND
+from circle_bounce_ros.startup import Ending, on_signals
 
 # However heavy the scene, a service waits about this long for a tick and no longer.
 BUDGET = 0.1  # s
@@ -37,11 +42,10 @@ CATCHING_UP = 0.02  # s
 
 DIAGNOSTICS_PERIOD = 1.0  # s
 
-# What rclpy raises for malformed arguments, and when its context has ended.
-RCL_ERRORS = (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError)
+HOW_TO_GO_ON = 'reset, or another scene, goes on'
 
 
-class BounceNode(Node):
+class BounceNode(BaseNode):
     """
     A scene that moves and says so.
 
@@ -53,7 +57,7 @@ class BounceNode(Node):
     """
 
     def __init__(self) -> None:
-        super().__init__('bounce')
+        super().__init__('bounce', PARAMETERS, always_set=['scene'])
         # Guards the simulation and all that goes with it: ticks at a high rate come from a thread of their own.
         self._lock = threading.Lock()
         self._settings = Parameters(self, self._on_change)
@@ -67,6 +71,7 @@ class BounceNode(Node):
         self._outputs = Publishers(self, self._settings['frame_id'], self._leads)
         self._diagnostics = Diagnostics(self, time.monotonic_ns())
         self._compiler = BackgroundCompiler()
+        self._held = False  # paused by a failure, and not by the user
         self._show_scene()
         self.create_service(Trigger, '~/reset', self._reset)
         self.create_service(SetBool, '~/pause', self._pause)
@@ -75,10 +80,13 @@ class BounceNode(Node):
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._ticker = Ticker(self, steady, self._on_timer, self._schedule.timer_period_ns)
         self.create_timer(DIAGNOSTICS_PERIOD, self._on_second, clock=steady)
+        self._others: list[str] = []
+        self.warn_of_unknown_parameters()
 
     def _show_scene(self, contacts_before: int = 0) -> None:
         scene = self._settings.scene
         self._runner = Runner(scene, contacts_before)
+        self._release()
         self._outputs.show(scene)
         self._schedule.set_restart_after(scene.restart_after)
         self.get_logger().info(f'{describe(scene)} in frame {self._settings["frame_id"]!r}')
@@ -118,14 +126,39 @@ class BounceNode(Node):
         """Publish a tick, if the simulation gets there in time or time need not be made up."""
         if tick.went_back:
             self.get_logger().warning('the clock jumped back: the scene starts again')
+            self._release()
         self._runner.record_contacts(self._outputs.contacts_are_wanted)
         reached_ns = self._runner.advance_to(tick.scene_ns, BUDGET)
+        if self._runner.failure and not self._held:
+            self._hold(reached_ns)
         if not self._schedule.came_to(reached_ns):
             return False
         self._outputs.publish(Moment(tick.stamp_ns, reached_ns, self._runner.state))
         return True
 
+    def _hold(self, reached_ns: int) -> None:
+        """Pause where the simulation cannot go on, until the scene starts again or gives way to another one."""
+        self._held = True
+        self._was_paused = self._schedule.paused
+        self._schedule.hold_at(reached_ns)
+        self.get_logger().error(f'{self._runner.failure}; paused: {HOW_TO_GO_ON}')
+
+    def _release(self) -> None:
+        """Go on as before a failure, if there was one."""
+        if self._held:
+            self._held = False
+            self._schedule.paused = self._was_paused
+            if self._runner.failure:
+                self._runner.restart()
+
     def _on_second(self) -> None:
+        others = self.other_publishers(TIME.name)
+        if others and others != self._others:
+            self.get_logger().warning(
+                f'{" and ".join(others)} publishes on the same topics: subscribers see two scenes in turn; '
+                'use another namespace or ROS_DOMAIN_ID'
+            )
+        self._others = others
         with self._lock:
             self._diagnostics.end_second(time.monotonic_ns(), self._runner.contact_count)
             if self._has_started():
@@ -143,6 +176,7 @@ class BounceNode(Node):
             seed=scene.seed,
             time_scale=self._settings['time_scale'],
             waits_for_clock=not self._leads and self._now_ns() == 0,
+            failure=self._runner.failure,
         )
 
     def _now_ns(self) -> int:
@@ -168,6 +202,7 @@ class BounceNode(Node):
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self._lock:
+            self._release()
             self._schedule.restart()
         response.success = True
         response.message = f'{describe(self._runner.scene)}: starts again from its first instant'
@@ -175,16 +210,23 @@ class BounceNode(Node):
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         with self._lock:
-            self._schedule.paused = request.data
+            response.success = request.data or not self._held
+            if response.success:
+                self._schedule.paused = request.data
+                response.message = 'paused' if request.data else 'running'
+                if self._held:
+                    self._was_paused = True
+            else:
+                response.message = f'{self._runner.failure}: {HOW_TO_GO_ON}'
             self._report_change()
-        response.success = True
-        response.message = 'paused' if request.data else 'running'
         return response
 
     def _step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         with self._lock:
-            response.success = self._schedule.paused
-            if self._schedule.paused:
+            response.success = self._schedule.paused and not self._held
+            if self._held:
+                response.message = f'{self._runner.failure}: {HOW_TO_GO_ON}'
+            elif self._schedule.paused:
                 self._schedule.step()
                 response.message = f'scene time {self._schedule.scene_ns / SECOND:.9f} s'
             else:
@@ -210,28 +252,22 @@ def describe(scene: Scene) -> str:
     return f'scene {scene.name!r}, {seed}, {len(scene.circles)} circles'
 
 
-def main(args: Sequence[str] | None = None) -> int:
+def run(args: Sequence[str], ending: Ending) -> int:
     """
-    Run the node until Ctrl-C or SIGTERM.
+    Run the node until a signal comes.
+
+    Parameters
+    ----------
+    args : sequence of str
+        The command line.
+    ending : Ending
 
     Returns
     -------
     int
-        The exit status: 1 for arguments and parameters that it cannot start with, and for contacts
-        without end.
+        The exit status: 1 for arguments and parameters that it cannot start with.
 
     """
-    on_signals(signal.default_int_handler)
-    try:
-        return run(args)
-    except KeyboardInterrupt:
-        return 0
-    finally:
-        # Python itself would give SIGTERM its deadly meaning back while it ends.
-        on_signals(signal.SIG_IGN)
-
-
-def run(args: Sequence[str] | None) -> int:
     try:
         rclpy.init(args=args)
     except RCL_ERRORS as error:
@@ -239,15 +275,17 @@ def run(args: Sequence[str] | None) -> int:
     node = None
     try:
         node = BounceNode()
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except (ParameterError, SceneError, EndlessContactsError) as error:
+        # From here on a signal ends the context, which ends the spinning.
+        if not ending.is_asked:
+            BaseExecutor(node).spin()
+    except (ParameterError, SceneError, InvalidTopicNameException) as error:
         return fail(error)
-    except RCL_ERRORS:
-        # A signal may end the context in the middle of a callback, which then cannot publish.
+    except ExternalShutdownException:
+        pass
+    except RCL_ERRORS as error:
+        # A signal may end the context while the node is being made.
         if rclpy.ok():
-            raise
+            return fail(error)
     finally:
         # A shell and a launcher often both pass a Ctrl-C on: the second must not break the clean end.
         # Not ignored yet, because rclpy, as it shuts down, puts back the handler that it found.
@@ -258,17 +296,7 @@ def run(args: Sequence[str] | None) -> int:
     return 0
 
 
-def on_signals(handler: Any) -> None:
-    """Treat Ctrl-C and SIGTERM alike."""
-    signal.signal(signal.SIGINT, handler)
-    signal.signal(signal.SIGTERM, handler)
-
-
 def fail(error: Exception) -> int:
-    """Log why the node ends, in one line, and return the exit status."""
-    rclpy.logging.get_logger('bounce').fatal(' '.join(str(error).split()))
+    """Log why the node cannot start, in one line, and return the exit status."""
+    rclpy.logging.get_logger('bounce').fatal(one_line(error))
     return 1
-
-
-if __name__ == '__main__':
-    sys.exit(main())

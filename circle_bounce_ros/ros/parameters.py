@@ -1,106 +1,27 @@
-"""The parameters of the node: what they are called, what is allowed, and who hears of a change."""
+"""The parameters of the node: what is allowed together, and who hears of a change."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from rcl_interfaces.msg import (
-    FloatingPointRange,
-    IntegerRange,
-    ParameterDescriptor,
-    SetParametersResult,
-)
-from rclpy.exceptions import ParameterException
-from rclpy.node import Node
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
+from circle_bounce_ros.base_node import BaseNode, ParameterError
 from circle_bounce_ros.kernel import Scene, SceneError
+from circle_bounce_ros.ros.main import PARAMETERS, SEED_OF_FILE
 from circle_bounce_ros.scene_file import load_scene
-
-# The seed that stands for the one in the scene file.
-SEED_OF_FILE = -1
-
-LARGEST_SEED = 2**63 - 1  # what an integer parameter can hold
-
-
-class ParameterError(ValueError):
-    """A parameter that the node cannot start with, in one sentence."""
-
-
-def _text(description: str) -> ParameterDescriptor:
-    return ParameterDescriptor(description=description)
-
-
-def _number(description: str, least: float, most: float) -> ParameterDescriptor:
-    limits = FloatingPointRange(from_value=least, to_value=most)
-    return ParameterDescriptor(description=description, floating_point_range=[limits])
-
-
-def _whole(description: str, least: int, most: int) -> ParameterDescriptor:
-    limits = IntegerRange(from_value=least, to_value=most, step=1)
-    return ParameterDescriptor(description=description, integer_range=[limits])
-
-
-def _fixed(description: str) -> ParameterDescriptor:
-    return ParameterDescriptor(description=description, read_only=True)
-
-
-PARAMETERS: list[tuple[str, Any, ParameterDescriptor]] = [
-    (
-        'scene',
-        'lesson',
-        _text(
-            'The scene to show: the name of a packaged one, or with a / or .yaml in it the path of a file, '
-            'from the working directory. No unit.'
-        ),
-    ),
-    (
-        'seed',
-        SEED_OF_FILE,
-        _whole(
-            'What the random groups of the scene are filled from; -1: the seed in the file. No unit.',
-            SEED_OF_FILE,
-            LARGEST_SEED,
-        ),
-    ),
-    (
-        'rate',
-        60.0,
-        _number(
-            'Ticks per second, in Hz: of wall time, with publish_clock of scene time.', 0.1, 1000.0
-        ),
-    ),
-    (
-        'time_scale',
-        1.0,
-        _number(
-            'Seconds of scene time per second of the clock (s/s), greater than 0; with publish_clock 0 means '
-            'as fast as possible.',
-            0.0,
-            1000.0,
-        ),
-    ),
-    ('start_paused', False, _fixed('Whether the scene stands still at the start. True or false.')),
-    (
-        'publish_clock',
-        False,
-        _fixed(
-            'Whether the node is the time source: it publishes /clock, and stamps are simulated time. '
-            'Not together with use_sim_time. True or false.'
-        ),
-    ),
-    ('frame_id', 'world', _fixed('The frame of all positions and velocities. No unit.')),
-]
 
 
 class Parameters:
     """
-    The parameters, declared, and checked before any change takes effect.
+    The parameters, checked before any change takes effect.
 
     Parameters
     ----------
-    node : Node
+    node : BaseNode
+        Has declared them.
     on_change : callable
         Called with the names of those that have been set, once they have.
 
@@ -111,14 +32,10 @@ class Parameters:
 
     """
 
-    def __init__(self, node: Node, on_change: Callable[[set[str]], None]) -> None:
+    def __init__(self, node: BaseNode, on_change: Callable[[set[str]], None]) -> None:
         self._node = node
         self._on_change = on_change
-        try:
-            node.declare_parameters('', PARAMETERS)
-        except ParameterException as error:
-            raise ParameterError(str(error)) from error
-        self._names = {name for name, *_ in PARAMETERS}
+        self._names = {row.name for row in PARAMETERS}
         values = self._values()
         self._check(values)
         self._scene = self._load(values)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray, PoseStamped, TwistStamped
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import PointCloud2, TimeReference
 from visualization_msgs.msg import MarkerArray
 
+from circle_bounce_ros.base_node import ParameterError
 from circle_bounce_ros.encoding import MOST_RADII, MovingMarkersEncoder
 from circle_bounce_ros.encoding.topics import (
     CONTACTS,
@@ -27,7 +29,8 @@ from circle_bounce_ros.encoding.topics import (
     no_markers,
 )
 from circle_bounce_ros.kernel import Scene
-from circle_bounce_ros.ros.parameters import ParameterError
+
+MOST_DEPTH = 2**31 - 1  # messages kept for a slow subscriber; DDS counts in int32
 
 TYPES = {
     'diagnostic_msgs/msg/DiagnosticArray': DiagnosticArray,
@@ -48,6 +51,14 @@ def qos(topic: Topic) -> QoSProfile:
     return QoSProfile(depth=topic.depth)
 
 
+def check_depth(profile: QoSProfile) -> SetParametersResult:
+    """Say in words what the C library would say in a block of lines."""
+    if 0 <= profile.depth <= MOST_DEPTH:
+        return SetParametersResult(successful=True)
+    reason = f'depth: must be from 0 to {MOST_DEPTH}, got {profile.depth}'
+    return SetParametersResult(successful=False, reason=reason)
+
+
 def create_publisher(node: Node, topic: Topic) -> Publisher:
     """
     Return a publisher whose QoS parameters may override.
@@ -63,12 +74,14 @@ def create_publisher(node: Node, topic: Topic) -> Publisher:
             TYPES[topic.type],
             topic.name,
             qos(topic),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(
+                callback=check_depth
+            ),
             # The executor would ask each publisher for events in every round, a third of a tick's cost;
             # of a QoS that does not fit, the subscriber is told as well.
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         )
-    except (ParameterException, RuntimeError, ValueError) as error:
+    except (ParameterException, InvalidQosOverridesError, RuntimeError, ValueError) as error:
         raise ParameterError(f'qos_overrides of {topic.name}: {error}') from error
 
 

@@ -6,13 +6,14 @@ import time
 
 from circle_bounce_ros.encoding.topics import State
 from circle_bounce_ros.kernel import (
+    EndlessContactsError,
     Scene,
     Simulation,
     compiled_code_is_ready,
     kinetic_energy,
 )
 from circle_bounce_ros.schedule.slices import advance
-from circle_bounce_ros.schedule.times import kernel_time
+from circle_bounce_ros.schedule.times import kernel_time, last_ns_before
 
 
 def start(scene: Scene) -> Simulation:
@@ -34,6 +35,8 @@ class Runner:
 
     def __init__(self, scene: Scene, contacts_before: int = 0) -> None:
         self._simulation = start(scene)
+        self._failed_ns: int | None = None  # where it cannot go on
+        self._failure = ''
         self._energy = kinetic_energy(self._simulation)
         self._contacts_before = contacts_before
 
@@ -46,6 +49,11 @@ class Runner:
     def state(self) -> State:
         """The state at the instant that was reached, to be used before the next one."""
         return State(self._simulation)
+
+    @property
+    def failure(self) -> str:
+        """Why the simulation cannot go on, such as contacts without end; empty when it can."""
+        return self._failure
 
     @property
     def contact_count(self) -> int:
@@ -76,19 +84,27 @@ class Runner:
         Returns
         -------
         int, ns
-            The instant reached: `scene_ns`, or less when time was up. The state is that of this very
-            instant.
-
-        Raises
-        ------
-        EndlessContactsError
-            For contacts without end at one instant.
+            The instant reached: `scene_ns`, or less when time was up or the simulation cannot go on. The
+            state is that of this very instant.
 
         """
+        if self._failed_ns is not None and scene_ns >= self._failed_ns:
+            return self._failed_ns
         if kernel_time(scene_ns) < self._simulation.time:
-            self._contacts_before += self._simulation.contact_count
-            wanted = self._simulation.record_contacts
-            self._simulation = start(self.scene)
-            self._simulation.record_contacts = wanted
+            self.restart()
         deadline = time.monotonic() + seconds
-        return advance(self._simulation, scene_ns, lambda: time.monotonic() < deadline)
+        try:
+            return advance(self._simulation, scene_ns, lambda: time.monotonic() < deadline)
+        except EndlessContactsError as error:
+            self._failure = str(error)
+            # The state stays that of the very instant, less than a nanosecond later.
+            self._failed_ns = min(last_ns_before(self._simulation.time), scene_ns)
+            return self._failed_ns
+
+    def restart(self) -> None:
+        """Start the scene again."""
+        self._contacts_before += self._simulation.contact_count
+        wanted = self._simulation.record_contacts
+        self._simulation = start(self.scene)
+        self._simulation.record_contacts = wanted
+        self._failure, self._failed_ns = '', None

@@ -136,6 +136,12 @@ class Schedule(ABC):
         self._shows_first_instant = False
         self._move(self._period)
 
+    def hold_at(self, scene_ns: int) -> None:
+        """Pause at an instant before the one that is due, because the scene cannot go on."""
+        self.paused = True
+        self._progress.advanced_ns -= self._position - scene_ns
+        self._position = Fraction(scene_ns)
+
     def take_progress(self) -> Progress:
         """Return the progress since the last call."""
         progress, self._progress = self._progress, Progress()

@@ -39,6 +39,12 @@ def kernel_time(scene_ns: int) -> float:
     return scene_ns * SECONDS_PER_NS
 
 
+def last_ns_before(seconds: float) -> int:
+    """Return the last whole nanosecond whose `kernel_time` is not after this time."""
+    after = first_ns_after(seconds)
+    return after if kernel_time(after) <= seconds else after - 1
+
+
 def first_ns_after(seconds: float) -> int:
     """Return the first whole nanosecond whose `kernel_time` is not before this time."""
     scene_ns = math.ceil(seconds / SECONDS_PER_NS)

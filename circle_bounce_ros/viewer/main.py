@@ -1,19 +1,33 @@
-"""The process: the event loop here, ROS in a thread beside it."""
+"""The command bounce_viewer."""
 
 from __future__ import annotations
 
-import asyncio
-import signal
 import sys
 from collections.abc import Sequence
 
-from rclpy.impl.implementation_singleton import rclpy_implementation
+from circle_bounce_ros.startup import ParameterRow, Program, start
 
-from circle_bounce_ros.viewer.ros_link import RosLink
-from circle_bounce_ros.viewer.server import Server
+FIRST_PORT = 8080
 
-# What rclpy raises for malformed arguments.
-RCL_ERRORS = (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError)
+PARAMETERS = [
+    ParameterRow(
+        'node', 'bounce', 'The node whose services the buttons call. No unit.', read_only=True
+    ),
+    ParameterRow(
+        'port',
+        FIRST_PORT,
+        'Where on 127.0.0.1 the page is; in use: the next free one of nine; 0: any free one. No unit.',
+        (0, 65535),
+        read_only=True,
+    ),
+]
+
+PROGRAM = Program(
+    'bounce_viewer',
+    'Serve a live page that shows what bounce_node publishes.',
+    PARAMETERS,
+    'circle_bounce_ros.viewer.process',
+)
 
 
 def main(args: Sequence[str] | None = None) -> int:
@@ -23,37 +37,11 @@ def main(args: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        The exit status: 1 for arguments that it cannot start with and when no port is free.
+        The exit status: 1 for parameters that it cannot start with, when no port is free and where ROS is missing,
+        2 for arguments that are for nobody.
 
     """
-    try:
-        return asyncio.run(run(args))
-    except KeyboardInterrupt:
-        return 0
-    except (OSError, *RCL_ERRORS) as error:
-        print(f'bounce_viewer: {error}', file=sys.stderr)
-        return 1
-
-
-async def run(args: Sequence[str] | None) -> int:
-    ended = asyncio.Event()
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, ended.set)
-    server = Server()
-    link = RosLink(args, server.hear)
-    try:
-        address, in_use = await server.start(link)
-        if in_use:
-            print(
-                f'In use: port {", ".join(map(str, in_use))}. So it is the next one.', flush=True
-            )
-        print(f'See it in the browser: {address}', flush=True)
-        await ended.wait()
-        await server.stop()
-    finally:
-        link.close()
-    return 0
+    return start(PROGRAM, args)
 
 
 if __name__ == '__main__':

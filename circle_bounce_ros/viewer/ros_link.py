@@ -10,12 +10,11 @@ from typing import Any
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from rcl_interfaces.msg import ParameterDescriptor
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.client import Client
 from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.node import Node
+from rclpy.exceptions import InvalidServiceNameException
+from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
@@ -24,7 +23,8 @@ from sensor_msgs.msg import PointCloud2, TimeReference
 from std_srvs.srv import SetBool, Trigger
 from visualization_msgs.msg import MarkerArray
 
-FIRST_PORT = 8080
+from circle_bounce_ros.base_node import BaseExecutor, BaseNode, ParameterError
+from circle_bounce_ros.viewer.main import PARAMETERS
 
 # Every contact is part of the story, and so is the state before it. Pages get the newest state only.
 FEW = QoSProfile(depth=5)
@@ -64,10 +64,8 @@ class RosLink:
         rclpy.init(
             args=args, context=self._context, signal_handler_options=SignalHandlerOptions.NO
         )
-        self._node = Node('bounce_viewer', context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
-        self._declare()
+        self._node = BaseNode('bounce_viewer', PARAMETERS, context=self._context)
+        self._executor = BaseExecutor(self._node)
         name = self._node.get_parameter('node').value
         self._contacts: Subscription | None = None
         self._contacts_wanted = False
@@ -78,41 +76,25 @@ class RosLink:
         self._node.create_subscription(
             DiagnosticArray, '/diagnostics', self._on_diagnostics, QoSProfile(depth=10)
         )
-        self._clients: dict[str, Client] = {
-            'reset': self._node.create_client(Trigger, f'{name}/reset'),
-            'pause': self._node.create_client(SetBool, f'{name}/pause'),
-            'step': self._node.create_client(Trigger, f'{name}/step'),
-            'set': self._node.create_client(
-                SetParametersAtomically, f'{name}/set_parameters_atomically'
-            ),
-        }
+        self._clients = self._create_clients(name)
         self.node_name = self._clients['reset'].service_name.rpartition('/')[0]
         self._thread = threading.Thread(target=self._spin, name='rclpy')
         self._thread.start()
 
-    def _declare(self) -> None:
-        self._node.declare_parameters(
-            '',
-            [
-                (
-                    'node',
-                    'bounce',
-                    ParameterDescriptor(
-                        description='The node whose services the buttons call. No unit.',
-                        read_only=True,
-                    ),
-                ),
-                (
-                    'port',
-                    FIRST_PORT,
-                    ParameterDescriptor(
-                        description='Where on 127.0.0.1 the page is; in use: the next free one of nine; '
-                        '0: any free one. No unit.',
-                        read_only=True,
-                    ),
-                ),
-            ],
-        )
+    def _create_clients(self, name: str) -> dict[str, Client]:
+        types = {
+            'reset': Trigger,
+            'pause': SetBool,
+            'step': Trigger,
+            'set_parameters_atomically': SetParametersAtomically,
+        }
+        try:
+            return {
+                service: self._node.create_client(kind, f'{name}/{service}')
+                for service, kind in types.items()
+            }
+        except InvalidServiceNameException:
+            raise ParameterError(f'node: must be the name of a node, got {name!r}') from None
 
     @property
     def port(self) -> int:
@@ -190,7 +172,9 @@ class RosLink:
         parameters = [
             Parameter(name, value=value).to_parameter_msg() for name, value in values.items()
         ]
-        return self._clients['set'], SetParametersAtomically.Request(parameters=parameters)
+        return self._clients['set_parameters_atomically'], SetParametersAtomically.Request(
+            parameters=parameters
+        )
 
     def _call(self, client: Client, message: Any, answer: asyncio.Future[Any]) -> None:
         def hand_over(future: Any) -> None:

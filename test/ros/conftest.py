@@ -39,7 +39,7 @@ def start(launch, observer):
     """Return a function that starts the node and waits until it answers; it must end well, too."""
     nodes = []
 
-    def start(namespace='', arguments=(), program=None, **parameters):
+    def start(namespace='', arguments=(), program=None, node='/bounce', **parameters):
         options = [
             part for name, value in parameters.items() for part in ('-p', f'{name}:={value}')
         ]
@@ -47,7 +47,7 @@ def start(launch, observer):
             options += ['-r', f'__ns:={namespace}']
         choice = {'program': program} if program else {}
         nodes.append(launch(*options, *arguments, **choice))
-        observer.wait_for_node(f'{namespace}/bounce')
+        observer.wait_for_node(f'{namespace}{node}')
         return nodes[-1]
 
     yield start

@@ -68,7 +68,7 @@ def read_points(cloud):
 class NodeProcess:
     """The node, started as a user starts it."""
 
-    def __init__(self, log, *arguments, program=('-m', 'circle_bounce_ros.ros.node')):
+    def __init__(self, log, *arguments, program=('-m', 'circle_bounce_ros.ros.main')):
         self._log = log
         with log.open('w') as output:
             self.process = subprocess.Popen(

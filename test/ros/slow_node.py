@@ -5,7 +5,7 @@ import sys
 import time
 
 from circle_bounce_ros.kernel import Simulation
-from circle_bounce_ros.ros.node import main
+from circle_bounce_ros.ros.main import main
 
 SECONDS = float(os.environ['SECONDS_PER_SLICE'])
 

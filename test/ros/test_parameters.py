@@ -7,8 +7,10 @@ import rclpy
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
+from circle_bounce_ros.base_node import BaseNode
 from circle_bounce_ros.kernel import SceneError
 from circle_bounce_ros.ros import parameters
+from circle_bounce_ros.ros.main import PARAMETERS
 
 
 @pytest.fixture
@@ -26,13 +28,27 @@ def loads(monkeypatch):
 
 
 @pytest.fixture
-def node(domain):
+def make_node(domain):
+    """Return a function that makes a node with the parameters, of which some are given at the start."""
     context = Context()
     rclpy.init(context=context, domain_id=domain)
-    node = rclpy.create_node('holder', context=context)
-    yield node
-    node.destroy_node()
+    nodes = []
+
+    def make_node(**given):
+        overrides = [Parameter(name, value=value) for name, value in given.items()]
+        options = {'always_set': ['scene'], 'context': context, 'parameter_overrides': overrides}
+        nodes.append(BaseNode('holder', PARAMETERS, **options))
+        return nodes[-1]
+
+    yield make_node
+    for node in nodes:
+        node.destroy_node()
     context.try_shutdown()
+
+
+@pytest.fixture
+def node(make_node):
+    return make_node()
 
 
 def test_scene_and_seed_together_are_loaded_once_and_told_once(node, loads):
@@ -59,7 +75,7 @@ def test_a_check_changes_nothing(node, loads):
     assert (holder.scene.name, holder['scene']) == ('lesson', 'lesson')
 
 
-def test_a_bad_scene_at_the_start_is_an_error(node):
-    node._parameter_overrides['scene'] = Parameter('scene', value='nothing')
+def test_a_bad_scene_at_the_start_is_an_error(make_node):
+    node = make_node(scene='nothing')
     with pytest.raises(SceneError, match='scene: must be one of billiard, '):
         parameters.Parameters(node, lambda _: None)

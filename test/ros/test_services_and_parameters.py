@@ -7,11 +7,18 @@ import time
 from itertools import pairwise
 
 import pytest
+import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray, PoseStamped, TwistStamped
-from observing import SECOND, nanoseconds, scene_times, stamps
+from observing import REPOSITORY, SECOND, nanoseconds, scene_times, stamps
 from rcl_interfaces.msg import ParameterType
-from rcl_interfaces.srv import DescribeParameters, GetParameters
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import TimeReference
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -217,20 +224,26 @@ def test_markers_begin_with_deleteall_after_a_change_of_scene(
 
 
 REFUSED = [
-    ({'rate': 0.0}, 'out of range'),
-    ({'rate': 1000.1}, 'out of range'),
-    ({'rate': math.nan}, 'out of range'),
-    ({'rate': 60}, 'Wrong parameter type'),
-    ({'time_scale': -1.0}, 'out of range'),
+    ({'rate': 0.0}, 'rate: must be from 0.1 to 1000.0, got 0.0'),
+    ({'rate': 1000.1}, 'rate: must be from'),
+    ({'rate': 10**15}, 'rate: must be from'),
+    ({'rate': math.nan}, 'rate: must be from'),
+    ({'rate': '60'}, "rate: must be a number, got '60'"),
+    ({'rate': True}, 'rate: must be a number'),
+    ({'rate': [60.0]}, 'rate: must be a number'),
+    ({'scene': 5}, 'scene: must be text'),
+    ({'seed': 5.0}, 'seed: must be a whole number'),
+    ({'time_scale': -1.0}, 'time_scale: must be from'),
     ({'time_scale': 0.0}, 'time_scale: must be > 0 without publish_clock, got 0.0'),
-    ({'time_scale': math.inf}, 'out of range'),
-    ({'seed': -2}, 'out of range'),
-    ({'publish_clock': True}, 'read-only'),
-    ({'frame_id': 'map'}, 'read-only'),
-    ({'start_paused': True}, 'read-only'),
+    ({'time_scale': math.inf}, 'time_scale: must be from'),
+    ({'seed': -2}, 'seed: must be from -1 to'),
+    ({'publish_clock': True}, 'publish_clock: can only be given at the start'),
+    ({'frame_id': 'map'}, 'frame_id: can only be given at the start'),
+    ({'start_paused': True}, 'start_paused: can only be given at the start'),
+    ({'no_such_parameter': 1}, 'no_such_parameter'),
     ({'scene': 'no_such_scene'}, 'must be one of billiard, break, '),
     ({'scene': './no_such_file.yaml'}, './no_such_file.yaml: '),
-    ({'scene': 'lesson', 'seed': -2}, 'out of range'),
+    ({'scene': 'lesson', 'seed': -2}, 'seed: must be from -1 to'),
     ({'rate': 10.0, 'scene': 'no_such_scene'}, 'must be one of billiard, break, '),
 ]
 
@@ -259,6 +272,52 @@ def test_a_value_out_of_range_and_a_bad_scene_are_refused_and_all_goes_on(
     ).values
     assert (scene.string_value, rate.double_value) == (lesson, 60.0)
     assert (seed.integer_value, time_scale.double_value) == (-1, 1.0)
+
+
+def test_whole_numbers_are_numbers_at_the_start_and_later(start, observer, lesson):
+    start(scene=lesson, rate=50, time_scale=2)
+    request = GetParameters.Request(names=['rate', 'time_scale'])
+
+    def values():
+        got = observer.call(GetParameters, '/bounce/get_parameters', request).values
+        assert [v.type for v in got] == [ParameterType.PARAMETER_DOUBLE] * 2
+        return [v.double_value for v in got]
+
+    assert values() == [50.0, 2.0]
+    assert observer.set(time_scale=3).successful
+    assert observer.set_together(rate=20, time_scale=4).successful
+    assert values() == [20.0, 4.0]
+
+
+def test_a_file_with_all_parameters_starts_the_scene_once_and_nothing_of_it_fails(start, observer):
+    """As `ros2 param load` does: one call with every value of the file."""
+    node = start()
+    file = yaml.safe_load((REPOSITORY / 'config' / 'params.yaml').read_text())
+    values = file['/**']['ros__parameters']
+    assert {'scene', 'seed', 'start_paused', 'frame_id'} <= values.keys()
+    messages = [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+    response = observer.call(
+        SetParameters, '/bounce/set_parameters', SetParameters.Request(parameters=messages)
+    )
+    assert [r.reason for r in response.results] == [''] * len(values)
+    assert all(r.successful for r in response.results)
+    assert observer.set_together(**values).successful
+    # At the start, and once for each of the two calls.
+    assert node.log.count("scene 'lesson'") == 3
+
+
+def test_a_value_of_no_type_that_there_is_is_refused_and_the_node_goes_on(start, observer, lesson):
+    start(scene=lesson)
+    message = Parameter('rate', value=1.0).to_parameter_msg()
+    message.value.type = 200
+    response = observer.call(
+        SetParameters, '/bounce/set_parameters', SetParameters.Request(parameters=[message])
+    )
+    assert not response.results[0].successful
+    request = SetParametersAtomically.Request(parameters=[message])
+    atomically = '/bounce/set_parameters_atomically'
+    assert not observer.call(SetParametersAtomically, atomically, request).result.successful
+    assert observer.reset().success
 
 
 def test_every_parameter_has_a_description_with_its_unit_and_numbers_have_a_range(
