@@ -20,12 +20,11 @@ class BackgroundCompiler:
     def start(self) -> bool:
         """Begin, if there is something to do and it has not begun; return whether it is under way."""
         if self._process is None and is_available() and not compiled_code_is_ready():
-            # The same Python and libraries as here: the environment goes on as it is.
+            # The same Python and libraries as here: the environment goes on as it is. Its warnings are for the user.
             self._process = subprocess.Popen(
                 ['nice', sys.executable, '-c', COMPILE],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
                 start_new_session=True,
             )
         return self._process is not None and self._process.poll() is None

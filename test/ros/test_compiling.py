@@ -1,4 +1,4 @@
-"""A node with no compiled code on disk starts plain, and the compiled engine takes over at a reset."""
+"""A node with no usable compiled code on disk starts plain, and the compiled engine takes over at a reset."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from observing import nanoseconds, scene_times
 from sensor_msgs.msg import TimeReference
 
 from circle_bounce_ros.kernel import Simulation, compiled_code_is_ready
+from circle_bounce_ros.kernel.engine import code_cache
 from circle_bounce_ros.scene_file import load_scene
 
 
 @pytest.fixture
-def no_code_on_disk(tmp_path, monkeypatch):
+def damaged_code_on_disk(tmp_path, monkeypatch):
     pytest.importorskip('numba', reason='numba is not installed: there is nothing to compile')
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path / 'cache'))
+    assert code_cache.write(b'was once code') == ''
+    code_cache.find()[0].write_bytes(b'cut')
     assert not compiled_code_is_ready()
 
 
-def test_nothing_waits_for_the_compiler(no_code_on_disk, start, observer):
+def test_nothing_waits_for_the_compiler(damaged_code_on_disk, start, observer):
     poses = observer.listen(PoseArray, 'poses')
     times = observer.listen(TimeReference, 'time')
     node = start(scene='mixed')
@@ -27,6 +30,7 @@ def test_nothing_waits_for_the_compiler(no_code_on_disk, start, observer):
     # The first messages are there before the compiler is done, which takes seconds of CPU.
     assert not compiled_code_is_ready()
     observer.spin_until(compiled_code_is_ready, 'compiled code on disk', within=120.0)
+    assert node.log.count('was damaged') == 1
     assert observer.reset().success
     simulation = Simulation(load_scene('mixed'), compiled=False)
 

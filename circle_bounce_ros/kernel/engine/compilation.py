@@ -1,5 +1,5 @@
 """
-The engine's functions, compiled by numba as they stand, and kept on disk for the next start.
+The engine's functions, compiled by numba as they stand.
 
 Each function is cloned with globals in which the functions that it calls are compiled clones themselves: the
 source knows nothing of numba. All but the entries are inlined by force, and reference counting is switched off:
@@ -8,25 +8,19 @@ without either every access to an array inside the world would be counted, at fo
 
 from __future__ import annotations
 
-import hashlib
-import os
-import sys
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
-from importlib.metadata import version
 from importlib.util import find_spec
-from pathlib import Path
 from types import FunctionType
 from typing import Any
 
+from circle_bounce_ros.kernel.engine import code_cache
 from circle_bounce_ros.kernel.engine.ahead import fetch
+from circle_bounce_ros.kernel.engine.code_cache import CodeCache
 from circle_bounce_ros.kernel.engine.records import CACHE_LINE
 
-KERNEL = Path(__file__).resolve().parents[1]
 PACKAGE = 'circle_bounce_ros.kernel'
-READY = 'ready'
 
 Function = Callable[..., Any]
 
@@ -38,33 +32,20 @@ def is_available() -> bool:
 
 def compiled_code_is_ready() -> bool:
     """Return whether compiled code of this very source is on disk: then nobody has to wait for it."""
-    folder = cache_directory() if is_available() else None
-    return folder is not None and (folder / READY).exists()
+    return is_available() and code_cache.is_ready()
 
 
-def say_ready() -> None:
-    """Note that the compiled code on disk is complete."""
-    folder = cache_directory()
-    if folder is not None:
-        (folder / READY).touch()
-
-
-def compile_entries(*entries: Function) -> list[Function]:
+def compile_entries(code: CodeCache, *entries: Function) -> list[Function]:
     """Return compiled twins of functions, which call compiled twins of all that they call."""
-    numba: Any = import_module('numba')
     twins: dict[Function, Any] = {}
     with suppress(
         ImportError, AttributeError
     ):  # not all that it needs is part of numba's public face
         twins[fetch] = _prefetch()
-    previous = numba.config.CACHE_DIR
-    folder = cache_directory()
-    numba.config.CACHE_DIR = str(folder or '')
-    try:
-        options = {'cache': True} if folder else {}
-        return [_twin(entry, twins, options) for entry in entries]
-    finally:
-        numba.config.CACHE_DIR = previous
+    dispatchers = [_twin(entry, twins, {}) for entry in entries]
+    for dispatcher in dispatchers:
+        code.attach(dispatcher)
+    return dispatchers
 
 
 def _twin(function: Function, twins: dict[Function, Any], options: dict[str, Any]) -> Any:
@@ -118,32 +99,3 @@ def _prefetch() -> Any:
         return types.void(array, index), generate
 
     return extending.intrinsic(fetch_twin)
-
-
-def cache_directory() -> Path | None:
-    """
-    Return where compiled code is kept: a folder for this very source, numba and Python; None if nowhere.
-
-    Numba itself looks at the file of each function only, not at those of the functions it calls. The
-    package's own folder may be read-only, and is not touched.
-    """
-    digest = hashlib.sha256(f'{version("numba")} {sys.version}'.encode())
-    for file in sorted(KERNEL.rglob('*.py')):
-        digest.update(file.read_bytes())
-    user = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
-    temporary = Path(tempfile.gettempdir()) / f'circle_bounce_ros_{os.getuid()}'
-    for base in (Path(user) / 'circle_bounce_ros', temporary):
-        folder = base / digest.hexdigest()[:16]
-        try:
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK) and _is_ours(folder):
-            return folder
-    return None
-
-
-def _is_ours(folder: Path) -> bool:
-    """Return whether nobody else can have put code there; in the temporary folder anybody could have made it."""
-    states = [place.stat() for place in (folder, folder.parent)]
-    return all(state.st_uid == os.getuid() and not state.st_mode & 0o002 for state in states)

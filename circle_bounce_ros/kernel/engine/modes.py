@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple, cast
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from circle_bounce_ros.kernel.engine import compilation, records
 from circle_bounce_ros.kernel.engine.alone import run_alone, run_alone_in_order
 from circle_bounce_ros.kernel.engine.build import build
+from circle_bounce_ros.kernel.engine.code_cache import CodeCache
 from circle_bounce_ros.kernel.engine.loop import run
 from circle_bounce_ros.kernel.engine.motion import read_positions
 from circle_bounce_ros.kernel.engine.records import World
@@ -47,7 +49,7 @@ PLAIN = Mode(run, run_alone, run_alone_in_order, read_positions, takes_arrays=Fa
 @lru_cache(maxsize=1)
 def compiled() -> Mode:
     """
-    Return the compiled mode; each entry is compiled when it is first called, or read from the cache.
+    Return the compiled mode: read from disk, or compiled now and kept there.
 
     Raises
     ------
@@ -55,10 +57,32 @@ def compiled() -> Mode:
         Where numba is not installed.
 
     """
+    code = CodeCache()
     together, alone, in_order, read = compilation.compile_entries(
-        run, run_alone, run_alone_in_order, read_positions
+        code, run, run_alone, run_alone_in_order, read_positions
     )
-    return Mode(together, alone, in_order, read, takes_arrays=True)
+    mode = Mode(together, alone, in_order, read, takes_arrays=True)
+    for collide in (True, False):
+        two = [Circle((x, 0.0), (1.0, 0.0), radius=0.1) for x in (0.0, 1.0)]
+        world = build(Scene(two, moving_circles_collide=collide), keep_log=False)
+        if collide:
+            mode.run(world, 1.0, 100)
+        else:
+            mode.run_alone(world, 1.0)
+            mode.run_alone_in_order(world, 2.0, 100)
+        mode.read_positions(world.moving, world.state, 1.0, np.empty((2, 2)))
+    code.save()
+    return mode
+
+
+@lru_cache(maxsize=1)
+def fastest() -> Mode:
+    """Return the compiled mode, or the plain one with a warning where numba is missing parts or fails."""
+    try:
+        return compiled()
+    except Exception as error:  # numba and LLVM have no common kind
+        warn(f'the engine runs plain, numba fails: {error!r}', RuntimeWarning, stacklevel=2)
+        return PLAIN
 
 
 def compile_ahead() -> bool:
@@ -71,25 +95,13 @@ def compile_ahead() -> bool:
         Whether there is compiled code from here on: False where numba is not installed.
 
     """
-    if not compilation.is_available():
-        return False
-    for collide in (True, False):
-        two = [Circle((x, 0.0), (1.0, 0.0), radius=0.1) for x in (0.0, 1.0)]
-        world = build(Scene(two, moving_circles_collide=collide), keep_log=False)
-        if collide:
-            compiled().run(world, 1.0, 100)
-        else:
-            compiled().run_alone(world, 1.0)
-            compiled().run_alone_in_order(world, 2.0, 100)
-        compiled().read_positions(world.moving, world.state, 1.0, np.empty((2, 2)))
-    compilation.say_ready()
-    return True
+    return compilation.is_available() and fastest() is not PLAIN
 
 
 def choose(count: int, wanted: bool | None) -> Mode:
     """Return the mode for so many moving circles; `wanted` None: the faster one that there is."""
     if wanted is None:
-        wanted = count > FEW and compilation.is_available()
+        return fastest() if count > FEW and compilation.is_available() else PLAIN
     return compiled() if wanted else PLAIN
 
 
