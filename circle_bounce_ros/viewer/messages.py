@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -32,7 +31,7 @@ def _is_truth(value: Any) -> bool:
 
 
 def _is_scale(value: Any) -> bool:
-    return type(value) in (int, float) and math.isfinite(value) and 0 <= value <= 1000
+    return type(value) in (int, float) and 0 <= value <= 1000
 
 
 def _is_text(value: Any) -> bool:

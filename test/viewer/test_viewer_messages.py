@@ -47,6 +47,7 @@ def test_there_is_a_good_example_of_every_type():
         '{"type": "ack", "frame": true}',
         '{"type": "time_scale", "value": NaN}',
         '{"type": "time_scale", "value": 1e999}',
+        f'{{"type": "time_scale", "value": 1{"0" * 400}}}',
         '{"type": "time_scale", "value": -1}',
         '{"type": "time_scale", "value": true}',
         '{"type": "scene", "scene": "", "seed": 0}',
