@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import struct
+import time
 from collections import OrderedDict, deque
 from typing import Any
 
@@ -82,6 +83,7 @@ class Client:
 
     def __init__(self, socket: web.WebSocketResponse, frames: Frames) -> None:
         self.circle = -1
+        self.heard = time.monotonic()  # s, when the page said something
         self._socket = socket
         self._frames = frames
         self._texts: deque[str] = deque(maxlen=MOST_TEXTS)
@@ -125,6 +127,9 @@ class Client:
         except ConnectionError:
             pass
 
-    async def close(self) -> None:
+    async def close(
+        self, code: WSCloseCode = WSCloseCode.GOING_AWAY, reason: bytes = b'the viewer ends'
+    ) -> None:
         """Say goodbye."""
-        await self._socket.close(code=WSCloseCode.GOING_AWAY, message=b'the viewer ends')
+        if self._socket.prepared:
+            await self._socket.close(code=code, message=reason)

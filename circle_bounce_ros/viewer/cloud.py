@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ DTYPES = {number: dtype for dtype, number in DATATYPES.items()}
 
 HEADER = 4  # bytes before the message proper, which alignment does not count
 LITTLE_ENDIAN = 1  # the second byte of that header
+LARGEST_POINT = 2**16  # bytes; numpy has room for no more than 2**31
 
 
 def stamp_of(message: bytes) -> int:
@@ -57,7 +59,7 @@ def read_cloud(message: bytes) -> Cloud:
     Raises
     ------
     ValueError
-        For bytes that are no little-endian cloud of the numbers that `encoding` writes.
+        For bytes that are no little-endian cloud, and for a description that contradicts itself or the data.
 
     """
     if len(message) < HEADER or message[1] != LITTLE_ENDIAN:
@@ -67,27 +69,91 @@ def read_cloud(message: bytes) -> Cloud:
         reader.position += 8  # the stamp
         reader.text()
         height, width, count = reader.uint32(), reader.uint32(), reader.uint32()
-        formats: dict[str, tuple[Any, int]] = {}
-        for _ in range(count):
-            name, offset, datatype = reader.text(), reader.uint32(), reader.uint8()
-            reader.uint32()  # one number a field
-            formats[name] = (DTYPES[datatype], offset)
-        reader.uint8()  # is_bigendian
-        point_step = reader.uint32()
-        reader.uint32()  # row_step
-        reader.uint32()  # length of the data
-        point = np.dtype(
-            {
-                'names': list(formats),
-                'formats': [dtype for dtype, _ in formats.values()],
-                'offsets': [offset for _, offset in formats.values()],
-                'itemsize': point_step,
-            }
-        )
-        points = np.frombuffer(message, point, height * width, HEADER + reader.position)
-    except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
+        fields = [
+            _Field(reader.text(), reader.uint32(), reader.uint8(), reader.uint32())
+            for _ in range(count)
+        ]
+        is_bigendian, point_step, row_step = reader.uint8(), reader.uint32(), reader.uint32()
+        length = reader.uint32()
+    except (struct.error, IndexError, UnicodeDecodeError) as error:
         raise ValueError(f'cloud: not readable: {error}') from error
-    return Cloud(stamp_of(message), points)
+    if is_bigendian:
+        raise ValueError('cloud.is_bigendian: must be false')
+    point = _point(fields, point_step)
+    if row_step != width * point_step:
+        raise ValueError(
+            f'cloud.row_step: must be width * point_step = {width * point_step}, got {row_step}'
+        )
+    if length != height * row_step:
+        raise ValueError(
+            f'cloud.data: must have height * row_step = {height * row_step} bytes, got {length}'
+        )
+    start = HEADER + reader.position
+    if len(message) < start + length:
+        raise ValueError(f'cloud.data: must have {length} bytes, got {len(message) - start}')
+    return Cloud(stamp_of(message), np.frombuffer(message, point, height * width, start))
+
+
+def check_points(points: NDArray[np.void], wanted: np.dtype[Any], names: Iterable[str]) -> None:
+    """
+    Check that points have these fields, of the types that they have in `wanted`, and finite numbers in them.
+
+    Raises
+    ------
+    ValueError
+
+    """
+    names = list(names)
+    there = points.dtype.names or ()
+    missing = sorted(set(names).difference(there))
+    if missing:
+        raise ValueError(f'cloud: must have the fields {", ".join(missing)}')
+    for name in names:
+        if points.dtype[name] != wanted[name]:
+            raise ValueError(
+                f'cloud.fields.{name}: must be {wanted[name]}, got {points.dtype[name]}'
+            )
+        if not np.isfinite(points[name]).all():
+            raise ValueError(f'cloud: {name} must be finite')
+
+
+class _Field(NamedTuple):
+    name: str
+    offset: int
+    datatype: int
+    numbers: int
+
+
+def _point(fields: list[_Field], point_step: int) -> np.dtype[Any]:
+    """Return what a point is, checked: numpy would take a step of 0 or of 4 GB."""
+    formats: dict[str, tuple[np.dtype[Any], int]] = {}
+    for name, offset, datatype, numbers in fields:
+        place = f'cloud.fields.{name}'
+        if not name or name in formats:
+            raise ValueError(f'cloud.fields: must have names that differ, got {name!r}')
+        if datatype not in DTYPES:
+            raise ValueError(f'{place}: must have a datatype from 1 to 8, got {datatype}')
+        if numbers != 1:
+            raise ValueError(f'{place}: must have count 1, got {numbers}')
+        dtype = DTYPES[datatype]
+        if offset + dtype.itemsize > point_step:
+            raise ValueError(
+                f'{place}: must end within point_step = {point_step} bytes, '
+                f'got {offset + dtype.itemsize}'
+            )
+        formats[name] = dtype, offset
+    if not formats or point_step > LARGEST_POINT:
+        raise ValueError(
+            f'cloud.point_step: must be from 1 to {LARGEST_POINT} bytes, got {point_step}'
+        )
+    return np.dtype(
+        {
+            'names': list(formats),
+            'formats': [dtype for dtype, _ in formats.values()],
+            'offsets': [offset for _, offset in formats.values()],
+            'itemsize': point_step,
+        }
+    )
 
 
 class _Reader:
@@ -110,4 +176,4 @@ class _Reader:
         length = self.uint32()
         start = HEADER + self.position
         self.position += length
-        return self._message[start : start + length - 1].decode()
+        return self._message[start : start + max(0, length - 1)].decode()

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
+from circle_bounce_ros.encoding.clouds import CONTACT_POINT
 from circle_bounce_ros.kernel import CONTACT_FIELDS, ContactKind
-from circle_bounce_ros.viewer.cloud import read_cloud
+from circle_bounce_ros.viewer.cloud import check_points, read_cloud
 
 FIELDS = [field.name for field in CONTACT_FIELDS]
 
@@ -24,18 +23,13 @@ class Contacts:
     Raises
     ------
     ValueError
-        For a message that is no cloud, one without the fields of a contact, or numbers that are not finite.
+        For a message that is no cloud of contacts, or numbers that are not finite.
 
     """
 
     def __init__(self, message: bytes) -> None:
         self._points = read_cloud(message).points
-        missing = set(FIELDS) - set(self._points.dtype.names or ())
-        if missing:
-            raise ValueError(f'cloud: must have the fields {", ".join(sorted(missing))}')
-        for name in FIELDS:
-            if not np.isfinite(self._points[name]).all():
-                raise ValueError(f'cloud: {name} must be finite')
+        check_points(self._points, CONTACT_POINT, FIELDS)
 
     def of(self, circle: int) -> list[dict[str, Any]]:
         """Return the contacts of the circle with this id, oldest first, with all fields of the record."""

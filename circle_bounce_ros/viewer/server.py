@@ -4,25 +4,31 @@ from __future__ import annotations
 
 import asyncio
 import json
-import socket
-from collections.abc import Awaitable, Callable
+import time
 from pathlib import Path
 from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
+from circle_bounce_ros.encoding.clouds import BODY
 from circle_bounce_ros.scene_file import scene_names
+from circle_bounce_ros.viewer.access import LOOPBACK, Handler, bind, only_this_machine
 from circle_bounce_ros.viewer.clients import Client, Frames
+from circle_bounce_ros.viewer.cloud import check_points, read_cloud
+from circle_bounce_ros.viewer.connections import PATIENCE, Connections
 from circle_bounce_ros.viewer.contacts import Contacts
 from circle_bounce_ros.viewer.messages import LARGEST_MESSAGE, MessageError, read
 from circle_bounce_ros.viewer.ros_link import Refusal, RosLink
+from circle_bounce_ros.viewer.seldom import LONGEST, SeldomLog, http_log
 
-LOOPBACK = '127.0.0.1'
-PORTS = 9  # tried one after the other
 MOST_CLIENTS = 32
+QUIET = 10.0  # s without a word after which a page makes room for another; one that draws speaks all the time
 MOST_REQUESTS = 8  # of one page, at a time
 STATUS_PERIOD = 1.0  # s
 HEARTBEAT = 20.0  # s
+
+# What a page reads of `bodies`.
+NEEDED = ('x', 'y', 'vx', 'vy', 'radius', 'id')
 
 PAGE = Path(__file__).parent / 'page'
 TYPES = {
@@ -42,45 +48,28 @@ HEADERS = {
     'Cache-Control': 'no-store',
 }
 
-Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
-
-
-def bind(port: int) -> tuple[socket.socket, list[int]]:
-    """
-    Return a listening socket on the first free port from this one, and the ports found in use.
-
-    Raises
-    ------
-    OSError
-        When there is none.
-
-    """
-    in_use = []
-    for candidate in range(port, port + PORTS) if port else [0]:
-        bound = socket.socket()
-        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            bound.bind((LOOPBACK, candidate))
-            bound.listen()
-        except OSError:
-            bound.close()
-            in_use.append(candidate)
-        else:
-            return bound, in_use
-    raise OSError(f'ports {port} to {port + PORTS - 1} of {LOOPBACK} are all in use')
-
 
 class Server:
-    """Serves the page, and hands on what is heard."""
+    """
+    Serves the page, and hands on what is heard.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    patience : float, s
+        With connections that ask for nothing, or do not read.
+    quiet : float, s
+        Without a word, after which a page makes room for another.
+
+    """
+
+    def __init__(self, patience: float = PATIENCE, quiet: float = QUIET) -> None:
+        self._patience = patience
+        self._quiet = quiet
         self._frames = Frames()
         self._clients: set[Client] = set()
         self._diagnostics: dict[str, Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
-        self._unreadable: set[str] = (
-            set()
-        )  # channels on which something came that nobody understands
+        self._faults: dict[str, str] = {}  # what is wrong with the last message, by channel
         self._files = {
             f'/{path.name}': (path.read_bytes(), TYPES[path.suffix])
             for path in sorted(PAGE.iterdir())
@@ -106,22 +95,31 @@ class Server:
 
         """
         self._link = link
+        self._log = SeldomLog(link.log)
         bound, in_use = bind(link.port)
         port = bound.getsockname()[1]
         hosts = {f'{name}:{port}' for name in (LOOPBACK, 'localhost')}
         if port == 80:
             hosts |= {LOOPBACK, 'localhost'}
-        app = web.Application(middlewares=[only_this_machine(hosts)], client_max_size=1024)
+        app = web.Application(
+            middlewares=[self._take_note, only_this_machine(hosts)], client_max_size=1024
+        )
         app.router.add_get('/socket', self._socket)
         app.router.add_get('/{path:.*}', self._file)
-        self._runner = web.AppRunner(app, access_log=None, shutdown_timeout=1.0)
+        self._runner = web.AppRunner(
+            app, access_log=None, logger=http_log(self._log), shutdown_timeout=1.0
+        )
         await self._runner.setup()
-        await web.SockSite(self._runner, bound).start()
+        assert self._runner.server is not None
+        self._connections = Connections(self._runner.server, self._log, patience=self._patience)
+        loop = asyncio.get_running_loop()
+        self._listening = await loop.create_server(self._connections, sock=bound)
         self._begin(self._tell_status())
         return f'http://{LOOPBACK}:{port}', in_use
 
     async def stop(self) -> None:
         """Close the pages' sockets, then everything else."""
+        self._listening.close()
         await asyncio.gather(*(client.close() for client in set(self._clients)))
         for task in set(self._tasks):
             task.cancel()
@@ -136,19 +134,23 @@ class Server:
 
     def hear(self, channel: str, message: Any) -> None:
         """Take note of what came on a channel of the RosLink, and hand it on."""
+        before = self._faults.pop(channel, None)
         try:
             self._take(channel, message)
         except ValueError as error:
-            # Somebody else's message: once is enough, it comes sixty times a second.
-            if channel not in self._unreadable:
-                self._link.log(f'{channel}: cannot be read: {error}')
-            self._unreadable.add(channel)
+            # Somebody else's message, and it comes sixty times a second.
+            fault = ' '.join(str(error).split())[:LONGEST]
+            self._log(f'{channel}: cannot be read: {fault}')
+            self._faults[channel] = fault
+        if (self._faults.get(channel) is None) != (before is None):
+            self._tell_all(json.dumps(self._status()))
 
     def _take(self, channel: str, message: Any) -> None:
         frames = self._frames
         if channel == 'time':
             frames.see_time(message)
         elif channel == 'bodies':
+            check_points(read_cloud(message).points, BODY, NEEDED)
             frames.see_bodies(message)
         elif channel == 'static':
             frames.static = message
@@ -178,7 +180,16 @@ class Server:
                 self._tell_all(json.dumps(self._status()))
 
     def _status(self) -> dict[str, Any]:
-        return {'type': 'status', 'publishers': self._link.count_publishers()}
+        return {
+            'type': 'status',
+            'publishers': self._link.count_publishers(),
+            'faults': self._faults,
+        }
+
+    @web.middleware
+    async def _take_note(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        self._connections.use(request.transport)
+        return await handler(request)
 
     async def _file(self, request: web.Request) -> web.Response:
         # A name that is in the table, or none: no path is ever made from what was asked for.
@@ -189,20 +200,32 @@ class Server:
         return web.Response(body=body, content_type=kind, charset='utf-8', headers=HEADERS)
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        if len(self._clients) >= MOST_CLIENTS:
+        if len(self._clients) >= MOST_CLIENTS and not self._make_room():
             raise web.HTTPServiceUnavailable(text=f'{MOST_CLIENTS} pages look on already')
         # Compression would cost four times the work and save nothing on one machine.
         page = web.WebSocketResponse(
             compress=False, max_msg_size=LARGEST_MESSAGE, heartbeat=HEARTBEAT
         )
-        await page.prepare(request)
         client = Client(page, self._frames)
-        self._greet(client)
+        # Before the next one can come: to prepare takes a while.
         self._clients.add(client)
+        try:
+            await page.prepare(request)
+            self._connections.keep(request.transport)
+            self._greet(client)
+            await self._converse(client, page)
+        finally:
+            self._clients.discard(client)
+            self._watch()
+            self._connections.use(request.transport)
+        return page
+
+    async def _converse(self, client: Client, page: web.WebSocketResponse) -> None:
         sending = self._begin(client.serve())
         requests: set[asyncio.Task[None]] = set()
         try:
             async for message in page:
+                client.heard = time.monotonic()
                 if message.type is not WSMsgType.TEXT:
                     await refuse(page, 'text only')
                     break
@@ -214,9 +237,15 @@ class Server:
                 self._obey(client, wanted, requests)
         finally:
             sending.cancel()
-            self._clients.discard(client)
-            self._watch()
-        return page
+
+    def _make_room(self) -> bool:
+        """Send the page away that has been silent longest, if it has been for long; return whether there was one."""
+        quietest = min(self._clients, key=lambda client: client.heard)
+        if time.monotonic() - quietest.heard < self._quiet:
+            return False
+        self._clients.discard(quietest)
+        self._begin(quietest.close(WSCloseCode.TRY_AGAIN_LATER, b'another page looks on'))
+        return True
 
     def _greet(self, client: Client) -> None:
         client.say(
@@ -262,27 +291,3 @@ async def refuse(page: web.WebSocketResponse, reason: str) -> None:
     """Close a socket that said something that no page says."""
     # The protocol has room for 123 bytes.
     await page.close(code=WSCloseCode.POLICY_VIOLATION, message=reason.encode()[:123])
-
-
-def only_this_machine(hosts: set[str]) -> Any:
-    """
-    Return a middleware that refuses what did not come to one of these hosts, from one of their pages.
-
-    Another site's page can send requests here, and its name can be made to point here; then Origin or Host is
-    its own.
-    """
-    origins = {f'http://{host}' for host in hosts}
-
-    @web.middleware
-    async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
-        named = request.headers.getall('Host', [])
-        origin = request.headers.getall('Origin', [])
-        is_page = len(origin) == 1 and origin[0] in origins
-        if len(named) != 1 or named[0] not in hosts:
-            raise web.HTTPForbidden(text='403: this host name is not served')
-        # A browser names the origin of every web socket.
-        if not is_page and (origin or request.path == '/socket'):
-            raise web.HTTPForbidden(text='403: this origin is not served')
-        return await handler(request)
-
-    return check

@@ -142,10 +142,11 @@ class Observer:
 
     def client(self, service_type, name):
         if name not in self._clients:
-            client = self.node.create_client(service_type, name)
-            self.spin_until(client.service_is_ready, f'service {name}')
-            self._clients[name] = client
-        return self._clients[name]
+            self._clients[name] = self.node.create_client(service_type, name)
+        client = self._clients[name]
+        # The node may have been started again meanwhile.
+        self.spin_until(client.service_is_ready, f'service {name}')
+        return client
 
     def call(self, service_type, name, request=None, within=PATIENCE):
         """Call a service and return the response."""

@@ -1,5 +1,6 @@
 """The real viewer, fed by the real node over DDS, and what a test needs to look at it."""
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -17,10 +18,11 @@ from browsing import (
     wait_for_values,
 )
 from observing import NodeProcess, Observer
+from scripting import BrowserScripts, NodeScripts
 from viewing import VIEWER, Stage, address_of, end_all
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='session')
 def stage(domain, tmp_path_factory):
     stage = Stage(tmp_path_factory.mktemp('stage'))
     stage.start_node()
@@ -29,7 +31,7 @@ def stage(domain, tmp_path_factory):
     stage.end()
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='session')
 def lone_viewer(domain, tmp_path_factory):
     """Return the address of a viewer in a namespace where there is no node."""
     log = tmp_path_factory.mktemp('lone') / 'log'
@@ -40,7 +42,7 @@ def lone_viewer(domain, tmp_path_factory):
         end_all([viewer])
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='session')
 def shared_observer(domain):
     observer = Observer(domain)
     yield observer
@@ -69,7 +71,7 @@ def play(stage, observer):
     return play
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='session')
 def browser():
     if missing_browser():
         pytest.skip(missing_browser())
@@ -77,6 +79,21 @@ def browser():
         browser = launch(playwright)
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope='session')
+def scripts(request, tmp_path_factory):
+    """Return the page's modules, to be called."""
+    if shutil.which('node'):
+        scripts = NodeScripts(tmp_path_factory.mktemp('page'))
+        yield scripts
+        scripts.close()
+        return
+    browser, address = (request.getfixturevalue(name) for name in ('browser', 'lone_viewer'))
+    page = browser.new_page()
+    page.goto(address)
+    yield BrowserScripts(page)
+    page.close()
 
 
 @pytest.fixture

@@ -157,7 +157,6 @@ def test_a_page_of_another_origin_gets_nothing(stage, browser, elsewhere):
         context.close()
 
 
-# The last one: clients that knew the old node may take seconds to know the new one.
 def test_a_node_that_ended_is_missed_and_one_that_starts_is_seen(show, stage):
     page = show()
     assert page.locator('#notice').is_hidden()

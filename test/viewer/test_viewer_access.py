@@ -1,7 +1,6 @@
 """Whom the viewer lets in: this machine, its own page, its own few messages."""
 
 import http.client
-from contextlib import AsyncExitStack
 from urllib.parse import urlsplit
 
 import aiohttp
@@ -9,7 +8,6 @@ import pytest
 from viewing import PATIENCE, connected, run
 
 from circle_bounce_ros.viewer.messages import LARGEST_MESSAGE
-from circle_bounce_ros.viewer.server import MOST_CLIENTS
 
 
 def get(address, path, **headers):
@@ -116,24 +114,8 @@ def test_who_says_anything_else_is_disconnected_and_the_others_stay(lone_viewer,
         async with connected(lone_viewer) as bad, connected(lone_viewer) as good:
             send = bad.socket.send_str if isinstance(message, str) else bad.socket.send_bytes
             await send(message)
-            while (await bad.socket.receive(timeout=PATIENCE)).type not in (
-                aiohttp.WSMsgType.CLOSE,
-                aiohttp.WSMsgType.CLOSED,
-            ):
-                pass
-            assert bad.socket.close_code == code
-            await good.said(type='status')
-
-    run(look())
-
-
-def test_so_many_pages_and_no_more(lone_viewer):
-    async def look():
-        async with AsyncExitStack() as pages:
-            for _ in range(MOST_CLIENTS):
-                await pages.enter_async_context(connected(lone_viewer))
-            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
-                await pages.enter_async_context(connected(lone_viewer))
-            assert refused.value.status == 503
+            assert await bad.goodbye() == code
+            await good.say(type='reset')
+            await good.said(type='answer')
 
     run(look())

@@ -10,7 +10,7 @@ from observing import NodeProcess
 from sensor_msgs.msg import PointCloud2
 from viewing import VIEWER, address_of, connected, end_all, run
 
-from circle_bounce_ros.viewer.server import PORTS
+from circle_bounce_ros.viewer.access import PORTS
 
 # What pages get
 
@@ -129,7 +129,10 @@ def test_contacts_are_subscribed_to_only_while_a_circle_is_selected(play, stage,
     async def look():
         async with connected(stage.address) as page:
             await page.frame()
-            assert observer.node.count_subscribers('contacts') == 0
+            # Pages of other tests may have closed just now.
+            observer.spin_until(
+                lambda: observer.node.count_subscribers('contacts') == 0, 'nobody listens'
+            )
             await page.say(type='select', circle=0)
             story = await page.said(type='contacts')
             assert story['circle'] == 0
@@ -243,4 +246,7 @@ def test_ctrl_c_ends_it_with_pages_open(stage):
             assert time.monotonic() - began < 10.0
             assert status == 0
 
-    run(look())
+    try:
+        run(look())
+    finally:
+        stage.start_viewer()

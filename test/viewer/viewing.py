@@ -10,7 +10,10 @@ from contextlib import asynccontextmanager
 import aiohttp
 from observing import NodeProcess
 
+from circle_bounce_ros.viewer.server import Server
+
 PATIENCE = 60.0  # s; only a fault takes that long
+CLOSE = aiohttp.WSMsgType.CLOSE
 VIEWER = ('-m', 'circle_bounce_ros.viewer.main')
 
 
@@ -93,6 +96,12 @@ class ProtocolClient:
         """Return the next text with these parts."""
         return await self.until(lambda m: isinstance(m, dict) and parts.items() <= m.items())
 
+    async def goodbye(self):
+        """Return the code with which the other side closes."""
+        while (message := await self.socket.receive(timeout=PATIENCE)).type is not CLOSE:
+            assert message.type in (aiohttp.WSMsgType.TEXT, aiohttp.WSMsgType.BINARY)
+        return message.data
+
     async def until(self, is_it, within=PATIENCE):
         deadline = time.monotonic() + within
         while True:
@@ -111,6 +120,40 @@ async def connected(address, **headers):
         ) as socket,
     ):
         yield ProtocolClient(socket)
+
+
+class Nowhere:
+    """What the server asks of its RosLink, without ROS."""
+
+    port = 0
+    node_name, bodies_topic = '/bounce', '/bodies'
+
+    def __init__(self):
+        self.wanted = asyncio.Queue()
+        self.logged = []
+
+    def want_contacts(self, wanted):
+        self.wanted.put_nowait(wanted)
+
+    def count_publishers(self):
+        return 0
+
+    async def ask(self, request):
+        return f'done: {request["type"]}'
+
+    def log(self, text):
+        self.logged.append(text)
+
+
+@asynccontextmanager
+async def serving(**options):
+    """`async with serving() as (server, link, address)`: the viewer's server in this process, without ROS."""
+    server, link = Server(**options), Nowhere()
+    address, _ = await server.start(link)
+    try:
+        yield server, link, address
+    finally:
+        await server.stop()
 
 
 def run(work):

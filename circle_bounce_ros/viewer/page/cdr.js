@@ -5,6 +5,7 @@ const HEADER = 4; // bytes before the message proper, which alignment does not c
 class Reader {
   constructor(buffer, start) {
     this.view = new DataView(buffer);
+    if (buffer.byteLength < start + HEADER) throw new Error('the message ends before its header does');
     if (this.view.getUint8(start + 1) !== 1) throw new Error('only little-endian CDR can be read');
     this.base = start + HEADER;
     this.position = 0;
@@ -12,7 +13,13 @@ class Reader {
 
   next(size) {
     this.position += (size - (this.position % size)) % size;
+    return this.take(size);
+  }
+
+  // Returns where so many bytes begin that the message must have.
+  take(size) {
     const at = this.base + this.position;
+    if (at + size > this.view.byteLength) throw new Error(`the message ends too early: ${size} bytes are missing at ${at}`);
     this.position += size;
     return at;
   }
@@ -26,8 +33,7 @@ class Reader {
 
   text() {
     const length = this.uint32();
-    const bytes = new Uint8Array(this.view.buffer, this.base + this.position, Math.max(0, length - 1));
-    this.position += length;
+    const bytes = new Uint8Array(this.view.buffer, this.take(length), Math.max(0, length - 1));
     return new TextDecoder().decode(bytes);
   }
 
@@ -36,7 +42,7 @@ class Reader {
     const count = this.uint32();
     if (!count) return;
     this.position += (unit - (this.position % unit)) % unit;
-    this.position += count * size;
+    this.take(count * size);
   }
 
   header() {
@@ -46,23 +52,40 @@ class Reader {
   }
 }
 
-// sensor_msgs/PointCloud2: where its points are, field by field.
+// Bytes of each datatype of sensor_msgs/PointField.
+const SIZES = { 1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 8: 8 };
+
+// sensor_msgs/PointCloud2: where its points are, field by field. What contradicts itself is refused, so that nobody
+// looks for points that are not there.
 export function readCloud(buffer, start) {
   const reader = new Reader(buffer, start);
   const { stamp, frame } = reader.header();
   const height = reader.uint32();
   const width = reader.uint32();
-  const fields = {};
+  const fields = Object.create(null); // a name may be any, __proto__ too
   for (let left = reader.uint32(); left > 0; left -= 1) {
     const name = reader.text();
+    must(name && !(name in fields), 'fields', 'have names that differ', `“${name}”`);
     fields[name] = { offset: reader.uint32(), type: reader.uint8() };
-    reader.uint32();
+    const numbers = reader.uint32();
+    must(numbers === 1, `fields.${name}`, 'have count 1', numbers);
   }
-  reader.uint8();
+  must(!reader.uint8(), 'is_bigendian', 'be false', 'true');
   const step = reader.uint32();
-  reader.uint32();
+  must(step > 0, 'point_step', 'be > 0', step);
+  for (const [name, { offset, type }] of Object.entries(fields)) {
+    must(type in SIZES, `fields.${name}`, 'have a datatype from 1 to 8', type);
+    must(offset + SIZES[type] <= step, `fields.${name}`, `end within point_step = ${step} bytes`, offset + SIZES[type]);
+  }
+  const row = reader.uint32();
+  must(row === width * step, 'row_step', `be width * point_step = ${width * step}`, row);
   const length = reader.uint32();
-  return { stamp, frame, count: height * width, fields, step, start: reader.base + reader.position, length };
+  must(length === height * row, 'data', `have height * row_step = ${height * row} bytes`, length);
+  return { stamp, frame, count: height * width, fields, step, start: reader.take(length), length };
+}
+
+function must(isRight, place, rule, got) {
+  if (!isRight) throw new Error(`${place}: must ${rule}, got ${got}`);
 }
 
 // sensor_msgs/TimeReference: the scene time of a stamp, seconds.
@@ -98,6 +121,7 @@ export function readMarkers(buffer, start) {
     reader.text(); // mesh_file
     reader.skip(1, 1);
     reader.uint8();
+    must([...position, ...scale, ...points.flat()].every(Number.isFinite), `${ns} ${id}`, 'have finite numbers', 'others');
     return { ns, id, type, action, position, scale, colour, points };
   });
 }

@@ -85,6 +85,7 @@ class App {
     this.pending = null;
     this.received = 0;
     this.node.publishers = null;
+    this.node.faults = {};
     this.pace.forget();
     this.watch();
   }
@@ -105,8 +106,12 @@ class App {
     if (message.type === 'hello') {
       this.node.topic = message.topic;
       fillScenes(message.scenes, this.node.values.scene);
-    } else if (message.type === 'status') this.node.publishers = message.publishers;
-    else if (message.type === 'diagnostics') this.hearReport(message);
+    } else if (message.type === 'status') {
+      this.node.publishers = message.publishers;
+      this.node.faults = message.faults;
+      this.watch();
+    }
+    if (message.type === 'diagnostics') this.hearReport(message);
     else if (message.type === 'contacts') this.story.hear(message);
     else if (message.type === 'answer') {
       const { to, done, text } = message;
@@ -134,7 +139,7 @@ class App {
       this.faults[kind] = null;
       return result;
     } catch (error) {
-      this.faults[kind] = error.message;
+      this.faults[kind] = `${kind}: ${error.message}`;
       return null;
     }
   }
@@ -142,7 +147,8 @@ class App {
   watch() {
     const { connected, faults, node } = this;
     const silentFor = performance.now() - this.frameArrived;
-    const fault = faults.static ?? faults.bodies ?? null;
+    const [channel] = Object.keys(node.faults);
+    const fault = faults.static ?? faults.bodies ?? (channel ? `${channel}: ${node.faults[channel]}` : null);
     showState(whatIsMissing({ connected, silentFor, fault, publishers: node.publishers, topic: node.topic }), node.paused);
   }
 

@@ -9,6 +9,7 @@ export class RemoteNode {
     this.values = {}; // of /diagnostics, as they were said
     this.topic = '';
     this.publishers = null; // of that topic; null: not known
+    this.faults = {}; // what the viewer could not read, by channel
   }
 
   // null: it has not said so yet.

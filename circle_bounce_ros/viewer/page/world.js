@@ -45,22 +45,20 @@ export class World {
   // Returns whether time has gone on from the frame before.
   setBodies(buffer, start, timeLength) {
     const from = start + timeLength + ((4 - (timeLength % 4)) % 4);
-    const cloud = readCloud(buffer, from);
+    let cloud = readCloud(buffer, from);
     for (const [name, type] of Object.entries(NEEDED)) {
-      if (cloud.fields[name]?.type !== type) throw new Error(`bodies: field ${name} is missing or of another type`);
+      const got = cloud.fields[name]?.type ?? 'none';
+      if (got !== type) throw new Error(`fields.${name}: must be there with datatype ${type}, got ${got}`);
     }
     const { count: before, seconds: then } = this;
+    const time = timeLength ? readTime(buffer, start) : null;
+    if (!isForCard(cloud)) cloud = copyForCard(buffer, cloud);
     this.cloud = cloud;
-    this.view = new DataView(buffer, cloud.start, cloud.length);
-    this.bytes = new Uint8Array(buffer, cloud.start, cloud.length);
-    this.count = Math.min(cloud.count, Math.floor(cloud.length / cloud.step));
-    if (timeLength) {
-      const time = readTime(buffer, start);
-      this.seconds = time.seconds;
-      this.scene = time.scene;
-    } else {
-      this.seconds = null;
-    }
+    this.view = new DataView(cloud.buffer ?? buffer, cloud.start, cloud.length);
+    this.bytes = new Uint8Array(cloud.buffer ?? buffer, cloud.start, cloud.length);
+    this.count = cloud.count;
+    this.seconds = time ? time.seconds : null;
+    if (time) this.scene = time.scene;
     if (this.count !== before) this.renew();
     return this.count === before && !(this.seconds !== null && then !== null && this.seconds < then);
   }
@@ -142,4 +140,28 @@ export class World {
     for (let row = 0; row < this.count; row += 1) add(this.get(row, 'x'), this.get(row, 'y'), this.get(row, 'radius'));
     return box.left <= box.right ? box : { left: -1, right: 1, bottom: -1, top: 1 };
   }
+}
+
+// Graphics cards want numbers of 4 bytes at multiples of 4, and points not further apart than this.
+const LARGEST_STRIDE = 252; // bytes
+
+function isForCard({ step, fields }) {
+  return step <= LARGEST_STRIDE && step % 4 === 0 && Object.keys(NEEDED).every((name) => fields[name].offset % 4 === 0);
+}
+
+// The same points with the needed fields only, one after the other.
+function copyForCard(buffer, cloud) {
+  const names = Object.keys(NEEDED);
+  const step = 4 * names.length;
+  const length = step * cloud.count;
+  const from = new DataView(buffer, cloud.start, cloud.length);
+  const to = new DataView(new ArrayBuffer(length));
+  const fields = {};
+  names.forEach((name, i) => {
+    fields[name] = { ...cloud.fields[name], offset: 4 * i };
+    for (let row = 0; row < cloud.count; row += 1) {
+      to.setUint32(row * step + 4 * i, from.getUint32(row * cloud.step + cloud.fields[name].offset, true), true);
+    }
+  });
+  return { ...cloud, fields, step, length, start: 0, buffer: to.buffer };
 }
