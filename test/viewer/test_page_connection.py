@@ -110,6 +110,21 @@ def test_what_cannot_be_read_is_said_in_words(lesson_page):
     assert text_of(lesson_page, 'state') == 'unreadable'
 
 
+SAY_FAULTS = """
+(faults) => {
+  bounce.hear({ type: 'status', publishers: 1, faults });
+  const notice = document.getElementById('notice');
+  return !notice.hidden && notice.innerText;
+}
+"""
+
+
+def test_what_the_viewer_could_not_read_is_said_until_it_can(lesson_page):
+    said = lesson_page.evaluate(SAY_FAULTS, {'contacts': 'cloud: nx must be finite'})
+    assert 'contacts: cloud: nx must be finite' in said
+    assert lesson_page.evaluate(SAY_FAULTS, {}) is False
+
+
 OPEN_SOCKET = """
 (url) => new Promise((resolve) => {
   const socket = new WebSocket(url);

@@ -5,12 +5,14 @@ import socket
 import time
 from urllib.parse import urlsplit
 
+import numpy as np
 import pytest
 from observing import NodeProcess
 from sensor_msgs.msg import PointCloud2
 from viewing import VIEWER, address_of, connected, end_all, run
 
 from circle_bounce_ros.viewer.access import PORTS
+from circle_bounce_ros.viewer.cloud import read_cloud
 
 # What pages get
 
@@ -71,22 +73,26 @@ def test_a_page_cannot_ask_for_more_by_acknowledging_what_it_never_got(play, sta
 
 def test_ten_pages_are_kept_up_to_date_with_10_000_circles(play, stage, many):
     play(many)
+    newest = 0
 
-    async def count_frames():
+    async def draw_frames():
+        nonlocal newest
+        behind = []
         async with connected(stage.address) as page:
-            began, frames = None, 0
-            while began is None or time.monotonic() < began + 2.0:
-                _, number, *_ = await page.frame()
-                began = began or time.monotonic()
+            while len(behind) < 20:
+                _, number, _, message = await page.frame()
                 await page.say(type='ack', frame=number)
-                frames += 1
-            return frames
+                newest = max(newest, number)
+                if read_cloud(message).points.size == 10000:
+                    behind.append(newest - number)
+        return behind
 
     async def look():
-        return await asyncio.gather(*(count_frames() for _ in range(10)))
+        return await asyncio.gather(*(draw_frames() for _ in range(10)))
 
-    # How fast, benchmarks/viewer.py measures on a machine that does nothing else: 60 in a second.
-    assert min(run(look())) > 5
+    # Nobody gets a frame that is older than what another had, but for the few that are on their way at the same time.
+    # How fast they come, benchmarks/viewer.py measures on a machine that does nothing else.
+    assert np.median(run(look())) <= 1
 
 
 def test_a_node_of_another_name_and_namespace_is_watched_and_asked(domain, tmp_path):
