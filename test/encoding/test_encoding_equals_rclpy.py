@@ -276,3 +276,28 @@ def test_what_float32_cannot_hold_is_infinite_and_the_cloud_says_so():
     assert near.is_dense
     huge = BodiesEncoder('world', [0], [1e39], [1.0]).encode(0, [(0, 0)], [(1, 2)])
     assert not deserialize_message(huge, PointCloud2).is_dense
+
+
+@pytest.mark.parametrize('encoder', ['bodies', 'contacts'])
+def test_points_are_as_long_as_their_fields_and_in_their_order(encoder):
+    """What readers make points by, who know the fields only: sensor_msgs_py.point_cloud2.create_cloud."""
+    if encoder == 'bodies':
+        encoded = BodiesEncoder('w', [3], [0.5], [2.0]).encode(1, [(1.0, 2.0)], [(3.0, 4.0)])
+    else:
+        encoded = ContactsEncoder('w').encode(1, np.zeros(1, CONTACT))
+    cloud = deserialize_message(encoded, PointCloud2)
+    sizes = [{2: 1, 6: 4, 7: 4, 8: 8}[field.datatype] * field.count for field in cloud.fields]
+    assert [field.offset for field in cloud.fields] == [sum(sizes[:k]) for k in range(len(sizes))]
+    assert cloud.point_step == sum(sizes)
+
+
+def test_a_cloud_goes_through_sensor_msgs_py_and_back():
+    library = pytest.importorskip('sensor_msgs_py.point_cloud2', reason='has no package on PyPI')
+    log = np.zeros(2, CONTACT)
+    log['time'] = [1.5, 2.5]
+    log['kind'] = [2, 3]
+    cloud = deserialize_message(ContactsEncoder('w').encode(1, log), PointCloud2)
+    points = library.read_points(cloud)
+    assert points['time'].tolist() == [1.5, 2.5]
+    again = library.create_cloud(cloud.header, cloud.fields, points)
+    assert (again.data, again.point_step) == (cloud.data, cloud.point_step)

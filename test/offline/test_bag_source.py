@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
 import struct
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from PIL import Image
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
@@ -248,6 +250,26 @@ def test_numbers_of_every_kind_are_read(tmp_path, order):
     (frame,) = frames_of(write_cloud(tmp_path / 'kinds', fields, 26, data, order == '>'))
     assert frame.positions.tolist() == [[-3.0, -70000.0]]
     assert frame.velocities.tolist() == [[0.5, 0.1]]
+
+
+def test_a_bag_of_0_1_0_is_drawn_by_its_own_description_of_its_fields(tmp_path):
+    """Its contacts have other offsets and seven bytes of padding, its bodies have no mass."""
+    old = ROOT / 'test/offline/data/bag_of_0_1_0'  # bounce_record lesson --duration 6 --rate 4
+    for with_scene in (True, False):
+        folder = tmp_path / f'copy{with_scene}'
+        shutil.copytree(old, folder)
+        if not with_scene:
+            (folder / 'scene.yaml').unlink()
+        simulation = Simulation(load_scene('lesson'), record_contacts=True)
+        frames = frames_of(folder)
+        assert len(frames) == 24
+        for k, frame in enumerate(frames, start=1):
+            simulation.advance_to(k / 4)
+            contacts = simulation.drain_contacts()
+            np.testing.assert_array_equal(frame.positions, simulation.positions.astype('f4'))
+            np.testing.assert_array_equal(frame.contacts['kind'], contacts['kind'])
+            np.testing.assert_array_equal(frame.contacts['y'], contacts['y'].astype('f4'))
+        assert simulation.contact_count > 4
 
 
 @pytest.mark.parametrize('storage', [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
