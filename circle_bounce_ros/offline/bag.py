@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Collection
 from contextlib import suppress
+from io import BytesIO
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal
 
 from rosbags.interfaces import (
@@ -19,6 +20,7 @@ from rosbags.interfaces import (
     QosTime,
 )
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2.storage_mcap import McapWriter, write_channel, write_string
 from rosbags.typesys import Stores, get_typestore
 
 from circle_bounce_ros.encoding.topics import (
@@ -30,10 +32,13 @@ from circle_bounce_ros.encoding.topics import (
     feeds_of_each_tick,
 )
 from circle_bounce_ros.kernel import Scene
-from circle_bounce_ros.offline.recording import write_scene
+from circle_bounce_ros.offline.recording import SCENE_FILE, lock, scene_text
 
 VERSION: Literal[9] = 9  # of rosbag2's metadata, that of ROS 2 Jazzy
 METADATA = 'metadata.yaml'
+
+# What rosbag2 writes about a channel.
+QOS_KEY, HASH_KEY = 'offered_qos_profiles', 'topic_type_hash'
 
 # What ROS 2 calls a time without end: no deadline, no end of life.
 FOR_EVER = QosTime(sec=9223372036, nsec=854775807)
@@ -84,6 +89,8 @@ class Bag:
     ------
     OSError
         When the folder cannot be made.
+    SceneError
+        When the scene is too large to be written beside it.
 
     """
 
@@ -98,9 +105,10 @@ class Bag:
         def wanted(topic: Topic) -> bool:
             return topics is None or topic.name in topics
 
+        text = scene_text(scene)
         self._writer = open_writer(folder, compress)
         self._lock = lock(folder)
-        write_scene(scene, folder)
+        (folder / SCENE_FILE).write_text(text)
         self._types = get_typestore(Stores.ROS2_JAZZY)
         self._each_tick = [
             (self._add(topic), encode)
@@ -143,9 +151,28 @@ class Bag:
         os.close(self._lock)
 
 
+class _McapWriter(McapWriter):
+    """That of rosbags, with what rosbag2 writes more: the hash of a channel's type."""
+
+    def add_connection(self, connection: Connection, offered_qos_profiles: str) -> None:
+        begin = self.chunk.bio.tell()
+        super().add_connection(connection, offered_qos_profiles)
+        more = BytesIO()
+        for text in (HASH_KEY, connection.digest):
+            write_string(more, text)
+        channel = self.channels[-1]
+        self.channels[-1] = channel._replace(metadata=channel.metadata + more.getvalue())
+        self.chunk.bio.seek(begin)
+        write_channel(self.chunk.bio, self.channels[-1], self.schemas)
+
+
+class _Writer(Writer):
+    STORAGE_PLUGINS = MappingProxyType({StoragePlugin.MCAP: _McapWriter})
+
+
 def open_writer(folder: Path, compress: bool) -> Writer:
     """Return the writer of a new bag, which may compress its chunks with zstd."""
-    writer = Writer(folder, version=VERSION, storage_plugin=StoragePlugin.MCAP)
+    writer = _Writer(folder, version=VERSION, storage_plugin=StoragePlugin.MCAP)
     if compress:
         writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
     writer.open()
@@ -157,25 +184,3 @@ def let_go(writer: Writer) -> None:
     # What is left in a buffer may have no room: that is the error already being reported.
     with suppress(OSError):
         writer.abort()
-
-
-def lock(folder: Path) -> int:
-    """
-    Make a folder this process's own until what is returned is closed, or the process ends in whatever way.
-
-    Raises
-    ------
-    BlockingIOError
-        When it is somebody else's.
-
-    """
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(descriptor)
-        raise
-    except OSError:
-        # Some network file systems know no locks: then nobody is kept out.
-        pass
-    return descriptor

@@ -1,12 +1,13 @@
 """
 A recording as Parquet tables, for people without ROS: full precision, units in the metadata of the columns.
 
-A table is a folder of parts, each written under another name and then renamed: whatever ends the program,
-each part is whole. `pandas.read_parquet(folder)` and `pyarrow.dataset` read a folder as one table.
+A table is a folder of parts, each written under another name outside of it and then moved: whatever ends the
+program, there is nothing but whole parts in it, and any reader can take the folder as one table.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,8 @@ from pyarrow import parquet
 
 from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import CONTACT_FIELDS, ContactField, Scene
-from circle_bounce_ros.offline.recording import write_scene
+from circle_bounce_ros.offline.files import begun
+from circle_bounce_ros.offline.recording import SCENE_FILE, lock, scene_text
 from circle_bounce_ros.schedule.times import kernel_time
 
 # A part holds at most so many rows and so many ticks: what kill -9 may cost.
@@ -26,6 +28,8 @@ ROWS_A_PART = 1 << 20
 TICKS_A_PART = 1 << 14
 
 COMPRESSION = 'zstd'
+
+CIRCLES_FILE = 'circles.parquet'
 
 Column = tuple[str, pa.DataType, str, str]
 
@@ -110,6 +114,8 @@ class Table:
         write_table(
             pa.Table.from_arrays(arrays, schema=self._schema),
             self._folder / f'part-{self._parts:05d}.parquet',
+            # Some readers take every file in a folder, whatever its name.
+            self._folder.parent,
         )
         self._parts += 1
         self._pending, self._rows = [], 0
@@ -124,24 +130,18 @@ class Table:
         self._pending, self._rows = [], 0
 
 
-def write_table(table: pa.Table, path: Path) -> None:
-    """Write a file that is whole as soon as it has its name."""
-    # Readers pass over names that begin with a dot.
-    begun = path.with_name(f'.{path.name}')
-    try:
+def write_table(table: pa.Table, path: Path, folder: Path | None = None) -> None:
+    """Write a table, as `begun` does."""
+    with begun(path, folder) as here:
         parquet.write_table(
             table,
-            begun,
+            here,
             compression=COMPRESSION,
             # What repeats, and only that, is shorter as a dictionary.
             use_dictionary=[
                 name for name in ('stamp', 'time', 'id') if name in table.schema.names
             ],
         )
-        begun.replace(path)
-    except BaseException:
-        begun.unlink(missing_ok=True)
-        raise
 
 
 class ParquetFolder:
@@ -160,14 +160,18 @@ class ParquetFolder:
     ------
     OSError
         When the folder cannot be made.
+    SceneError
+        When the scene is too large to be written beside it.
 
     """
 
     def __init__(self, folder: Path, scene: Scene, tables: Collection[str] | None = None) -> None:
+        text = scene_text(scene)
         folder.mkdir(parents=True)
-        write_scene(scene, folder)
+        self._lock = lock(folder)
+        (folder / SCENE_FILE).write_text(text)
         about = {'scene': scene.name, 'seed': 'none' if scene.seed is None else str(scene.seed)}
-        write_table(_circles(scene, about), folder / 'circles.parquet')
+        write_table(_circles(scene, about), folder / CIRCLES_FILE)
         moving = [i for i, circle in enumerate(scene.circles) if not circle.locked]
         self._ids = np.array(moving, np.uint32)
         self._tables = {
@@ -202,11 +206,13 @@ class ParquetFolder:
         """Write what waits."""
         for table in self._tables.values():
             table.flush()
+        os.close(self._lock)
 
     def abort(self) -> None:
         """Give up what waits; the parts that are written stay."""
         for table in self._tables.values():
             table.forget()
+        os.close(self._lock)
 
 
 def _circles(scene: Scene, about: Mapping[str, str]) -> pa.Table:

@@ -13,6 +13,7 @@ from pyarrow import ArrowException, parquet
 
 from circle_bounce_ros.kernel import EndlessContactsError, SceneError
 from circle_bounce_ros.offline.bag_source import of_bag
+from circle_bounce_ros.offline.files import begun
 from circle_bounce_ros.offline.pictures import style
 from circle_bounce_ros.offline.pictures.animation import FRAMES_PER_SECOND, animate
 from circle_bounce_ros.offline.pictures.energy import energy
@@ -120,19 +121,16 @@ def output_of(chosen: argparse.Namespace) -> Path:
 
 def draw(chosen: argparse.Namespace, path: Path) -> dict[str, float]:
     """Draw what the command line says and return the numbers that the picture shows."""
-    # Beside its place and renamed, so that a full disk destroys no picture.
-    begun = path.with_name(f'.{path.name}{path.suffix}')
-    try:
+    # So that a full disk destroys no picture.
+    with begun(path) as here:
+        if chosen.picture == ANIMATION:
+            return animate(open_source(chosen), here)
         if chosen.picture == PRESSURE:
-            numbers = finish(draw_pressure(chosen), begun)
-        elif chosen.picture == ANIMATION:
-            numbers = animate(open_source(chosen), begun)
+            figure, numbers = draw_pressure(chosen)
         else:
-            numbers = finish(DRAW[chosen.picture](open_source(chosen)), begun)
-        begun.replace(path)
-    finally:
-        begun.unlink(missing_ok=True)
-    return numbers
+            figure, numbers = DRAW[chosen.picture](open_source(chosen))
+        style.write(figure, here, path.suffix.removeprefix('.'), numbers)
+        return numbers
 
 
 def open_source(chosen: argparse.Namespace) -> Source:
@@ -162,13 +160,6 @@ def open_source(chosen: argparse.Namespace) -> Source:
     if not 0.0 < rate <= LARGEST_RATE:
         raise SourceError(f'rate: must be > 0 and at most {LARGEST_RATE:g} Hz, got {rate:g}')
     return of_bag(folder, duration, rate, chosen.namespace)
-
-
-def finish(picture: Picture, path: Path) -> dict[str, float]:
-    """Write a picture and return its numbers."""
-    figure, numbers = picture
-    style.write(figure, path, numbers)
-    return numbers
 
 
 def draw_pressure(chosen: argparse.Namespace) -> Picture:

@@ -11,18 +11,22 @@ from pathlib import Path
 from tqdm import tqdm
 
 from circle_bounce_ros.encoding.topics import Moment
-from circle_bounce_ros.kernel import EndlessContactsError, Scene, SceneError, Simulation
-from circle_bounce_ros.offline.bag import Bag, topics_of
-from circle_bounce_ros.offline.parquet import TABLES, ParquetFolder
-from circle_bounce_ros.offline.recording import Sink, moments
-from circle_bounce_ros.offline.repair import RepairError, repair
+from circle_bounce_ros.kernel import EndlessContactsError, SceneError, Simulation
+from circle_bounce_ros.offline.recording import moments
+from circle_bounce_ros.offline.repair import RepairError, clean, is_of_tables, repair
+from circle_bounce_ros.offline.sinks import (
+    BAG,
+    PARQUET,
+    TopicsError,
+    open_sink,
+    topics_to_record,
+)
 from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping
 from circle_bounce_ros.scene_file import load_scene
 from circle_bounce_ros.schedule.recording import RecordingTicks
 from circle_bounce_ros.schedule.times import SECOND
 
 COMMAND = 'bounce_record'
-BAG, PARQUET = 'bag', 'parquet'
 
 # A bar that is drawn at each tick costs more than the tick.
 BAR_PERIOD = 0.2  # s
@@ -52,7 +56,7 @@ def arguments_of(arguments: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument('--compress', action='store_true', help='a smaller bag, more slowly')
     parser.add_argument(
-        '--repair', type=Path, metavar='FOLDER', help='make a bag whole that was cut short'
+        '--repair', type=Path, metavar='FOLDER', help='make a recording whole that was cut short'
     )
     chosen = parser.parse_args(arguments)
     if chosen.repair is None and (chosen.scene is None or chosen.output is None):
@@ -78,7 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if chosen.repair is not None:
             return repair_bag(chosen.repair)
         return record(chosen)
-    except (RecordError, RepairError, SceneError) as error:
+    except (RecordError, RepairError, SceneError, TopicsError) as error:
         print(f'{COMMAND}: {error}', file=sys.stderr)
         return 1
     except OSError as error:
@@ -92,7 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def record(chosen: argparse.Namespace) -> int:
     """Record what the command line says and return the exit status."""
     scene = load_scene(chosen.scene, chosen.seed)
-    topics = check_topics(chosen.topics, scene, chosen.format)
+    topics = chosen.topics and topics_to_record(chosen.topics, scene, chosen.format)
     if not chosen.frame_id:
         raise RecordError("frame-id: must not be empty, got ''")
     try:
@@ -105,7 +109,7 @@ def record(chosen: argparse.Namespace) -> int:
     began = time.monotonic()
     last: Moment | None = None
     with Stopping() as stop, ProgressBar(ticks, len(scene.circles)) as bar:
-        sink = make_sink(folder, scene, chosen, topics)
+        sink = open_sink(folder, scene, chosen.format, topics, chosen.frame_id, chosen.compress)
         try:
             simulation = Simulation(scene, record_contacts=sink.wants_contacts)
             for last in moments(simulation, ticks, stop):
@@ -130,27 +134,6 @@ def record(chosen: argparse.Namespace) -> int:
         f'in {took:.1f} s ({end / took:.0f} times real time)'
     )
     return stop.exit_status
-
-
-def check_topics(topics: list[str] | None, scene: Scene, form: str) -> set[str] | None:
-    """Return the topics to record, None for all."""
-    if topics is None:
-        return None
-    known = list(TABLES) if form == PARQUET else [topic.name for topic in topics_of(scene)]
-    names = {name if name in known else name.lstrip('/') for name in topics}
-    names = {f'/{name}' if f'/{name}' in known else name for name in names}
-    unknown = sorted(names - set(known))
-    if unknown:
-        raise RecordError(f'topics: must be from {", ".join(known)}, got {", ".join(unknown)}')
-    return names
-
-
-def make_sink(
-    folder: Path, scene: Scene, chosen: argparse.Namespace, topics: set[str] | None
-) -> Sink:
-    if chosen.format == PARQUET:
-        return ParquetFolder(folder, scene, topics)
-    return Bag(folder, scene, chosen.frame_id, topics, chosen.compress)
 
 
 def broken(folder: Path, error: BaseException, last: Moment | None, form: str) -> str:
@@ -199,7 +182,11 @@ class ProgressBar:
 
 
 def repair_bag(folder: Path) -> int:
-    """Repair a bag, say what was saved, and return the exit status."""
+    """Repair a recording, say what was saved, and return the exit status."""
+    if is_of_tables(folder):
+        clean(folder)
+        print(f'{folder}: its tables are whole')
+        return 0
     with tqdm(unit='B', unit_scale=True, disable=None, file=sys.stderr, desc='read') as bar:
         repaired = repair(folder, lambda place: bar.update(place - bar.n))
     print(f'{folder}: repaired, {repaired.messages} messages up to {repaired.end:.9g} s')

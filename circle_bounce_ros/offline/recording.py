@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import math
+import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
 from circle_bounce_ros.encoding.topics import Moment, State
-from circle_bounce_ros.kernel import Circle, Scene, Simulation
+from circle_bounce_ros.kernel import Circle, Scene, SceneError, Simulation
+from circle_bounce_ros.scene_file.reading import LARGEST_FILE
 from circle_bounce_ros.schedule.schedules import Tick
 from circle_bounce_ros.schedule.slices import advance
 from circle_bounce_ros.schedule.times import kernel_time
@@ -64,9 +67,21 @@ def moments(
         yield Moment(tick.stamp_ns, tick.scene_ns, State(simulation))
 
 
-def write_scene(scene: Scene, folder: Path) -> None:
-    """Write a scene with its groups filled as a scene file, which gives the same scene to the last bit."""
-    (folder / SCENE_FILE).write_text(json.dumps(describe(scene), indent=None) + '\n')
+def scene_text(scene: Scene) -> str:
+    """
+    Return a scene with its groups filled as a scene file, which gives the same scene to the last bit.
+
+    Raises
+    ------
+    SceneError
+        For so many circles and walls that it could not be read again.
+
+    """
+    text = json.dumps(describe(scene)) + '\n'
+    if len(text) > LARGEST_FILE:
+        rule = f'must be at most {LARGEST_FILE / 1e6:g} MB when written out'
+        raise SceneError('', f'{rule}, got {len(text) / 1e6:.1f} MB')
+    return text
 
 
 def describe(scene: Scene) -> dict[str, Any]:
@@ -93,3 +108,25 @@ def _circle(circle: Circle) -> dict[str, Any]:
     if circle.name:
         data['name'] = circle.name
     return data
+
+
+def lock(folder: Path) -> int:
+    """
+    Make a folder this process's own until what is returned is closed, or the process ends in whatever way.
+
+    Raises
+    ------
+    BlockingIOError
+        When it is somebody else's.
+
+    """
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise
+    except OSError:
+        # Some network file systems know no locks: then nobody is kept out.
+        pass
+    return descriptor

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import os
 import shutil
-import struct
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, DataEnd, Message, Schema
 from mcap.stream_reader import StreamReader
 from rosbags.interfaces import Connection
+from rosbags.rosbag2 import Writer
 from rosbags.rosbag2.metadata import parse_qos
 from rosbags.typesys import Stores, get_typestore
 
-from circle_bounce_ros.offline.bag import METADATA, let_go, lock, open_writer
+from circle_bounce_ros.offline.bag import HASH_KEY, METADATA, QOS_KEY, let_go, open_writer
+from circle_bounce_ros.offline.files import remove_begun
+from circle_bounce_ros.offline.parquet import CIRCLES_FILE
+from circle_bounce_ros.offline.recording import lock
 
 REPAIRING = '.repairing'
-QOS_KEY = 'offered_qos_profiles'
+ENCODINGS = ('ros2msg', 'ros2idl')
 
 
 class RepairError(ValueError):
@@ -106,21 +108,45 @@ def repair(folder: Path, report: Callable[[int], None] = lambda _: None) -> Repa
     return repaired
 
 
+def clean(folder: Path) -> None:
+    """
+    Remove the part of a table that kill -9 or a full disk has left unfinished; all others are whole.
+
+    Raises
+    ------
+    RepairError
+        When somebody is still at work there.
+
+    """
+    with locked(folder):
+        remove_begun(folder)
+
+
+def is_of_tables(folder: Path) -> bool:
+    """Return whether a folder is a recording as Parquet tables."""
+    return (folder / CIRCLES_FILE).exists()
+
+
 def _copy(old: Path, new: Path, report: Callable[[int], None]) -> Repaired:
     writer = open_writer(new, compress=_is_compressed(old))
-    connections: dict[int, Connection] = {}
+    connections: dict[tuple[str, ...], Connection] = {}
     count, last = 0, 0
-    types = get_typestore(Stores.ROS2_JAZZY)
     try:
         for schema, channel, message, place in _readable(old):
-            if channel.id not in connections:
-                connections[channel.id] = writer.add_connection(
-                    channel.topic,
-                    schema.name,
-                    typestore=types,
-                    offered_qos_profiles=parse_qos(channel.metadata.get(QOS_KEY, '')),
-                )
-            writer.write(connections[channel.id], message.log_time, message.data)
+            key = (
+                channel.topic,
+                schema.name,
+                channel.message_encoding,
+                *channel.metadata.values(),
+            )
+            if key not in connections:
+                try:
+                    connections[key] = _add(writer, schema, channel)
+                except Exception as error:
+                    # What is wrong there has the error of whichever library meets it first.
+                    reason = ' '.join(str(error).split())
+                    raise RepairError(f'{old}: the topic {channel.topic}: {reason}') from None
+            writer.write(connections[key], message.log_time, message.data)
             count, last = count + 1, message.log_time
             report(place)
         if not count:
@@ -130,6 +156,25 @@ def _copy(old: Path, new: Path, report: Callable[[int], None]) -> Repaired:
         let_go(writer)
         raise
     return Repaired(count, last / 1e9)
+
+
+def _add(writer: Writer, schema: Schema, channel: Channel) -> Connection:
+    """Add a topic as it is in the old file, of whatever type."""
+    if schema.encoding not in ENCODINGS:
+        raise ValueError(f'must be defined as {" or ".join(ENCODINGS)}, got {schema.encoding}')
+    known = channel.metadata.get(HASH_KEY)
+    types = get_typestore(Stores.ROS2_JAZZY)
+    if not known and schema.name not in types.types:
+        # So recorders wrote until 2023, and ours until 0.1.0.
+        raise ValueError(f'must have the hash of its type, got none for {schema.name}')
+    return writer.add_connection(
+        channel.topic,
+        schema.name,
+        msgdef=schema.data.decode(),
+        rihs01=known or types.hash_rihs01(schema.name),
+        serialization_format=channel.message_encoding,
+        offered_qos_profiles=parse_qos(channel.metadata.get(QOS_KEY, '')),
+    )
 
 
 def _is_compressed(path: Path) -> bool:
@@ -150,15 +195,21 @@ def _readable(path: Path) -> Iterator[tuple[Schema, Channel, Message, int]]:
                 schemas[record.id] = record
             elif isinstance(record, Channel):
                 channels[record.id] = record
-            elif isinstance(record, Message):
+            elif isinstance(record, Message) and record.channel_id in channels:
                 channel = channels[record.channel_id]
-                yield schemas[channel.schema_id], channel, record, file.tell()
+                if channel.schema_id in schemas:
+                    yield schemas[channel.schema_id], channel, record, file.tell()
 
 
 def _records(reader: StreamReader) -> Iterator[object]:
-    # Up to where it was cut, however the library says so: a record that is too short, or one of nothing.
-    with suppress(McapError, EOFError, struct.error, ValueError):
+    """Return all records up to where the file is cut."""
+    try:
         for record in reader.records:
             if isinstance(record, DataEnd):
                 return  # what follows is index
             yield record
+    except OSError:
+        raise
+    except Exception:
+        # A record that is too short, or one of nothing, has the error of whichever library meets it first.
+        return

@@ -20,8 +20,9 @@ import yaml
 from circle_bounce_ros.kernel import SceneError
 from circle_bounce_ros.scene_file.wording import inside, shortened, shown
 
-# A hundred thousand circles fit; more is a mistake, or somebody filling the memory.
-LARGEST_FILE = 10_000_000  # bytes
+# A hundred thousand circles fit, with the longest names and all digits; more is a mistake, or somebody filling the
+# memory.
+LARGEST_FILE = 50_000_000  # bytes
 
 # The schema needs 6. Python's own stack ends near 1,000.
 DEEPEST_NESTING = 20

@@ -9,6 +9,7 @@ from circle_bounce_ros.schedule.schedules import ClockSchedule, Tick
 from circle_bounce_ros.schedule.times import LAST_INSTANT, SECOND, exact_decimal
 
 LARGEST_RATE = 1e6  # Hz
+MOST_TICKS = 10**9  # half a day of the fastest scene
 
 
 class RecordingTicks:
@@ -20,7 +21,7 @@ class RecordingTicks:
     rate : float, Hz
         Greater than 0, taken as the decimal number that it is written as.
     duration : float, s
-        Long enough for one tick, less than 2**31 s.
+        Long enough for one tick, less than 2**31 s and 10^9 ticks.
     restart_after : float, s
         As in a scene; `inf` for never.
 
@@ -43,6 +44,10 @@ class RecordingTicks:
         if not self._count:
             raise ValueError(
                 f'duration: must be at least one period, {1.0 / rate:g} s, got {duration:g}'
+            )
+        if self._count > MOST_TICKS:
+            raise ValueError(
+                f'duration: must be at most {MOST_TICKS} ticks, got {duration:g} s at {rate:g} Hz'
             )
 
     def __len__(self) -> int:

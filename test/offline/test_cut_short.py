@@ -6,8 +6,12 @@ import resource
 import signal
 import subprocess
 
+import numpy as np
 import pytest
 from conftest import files_of, wait_until
+from mcap.reader import make_reader
+from mcap.writer import CompressionType
+from mcap.writer import Writer as McapWriter
 from pyarrow import parquet
 from reading import SECOND, raw_with_mcap, read_with_rosbags, record
 
@@ -126,6 +130,75 @@ def test_a_bag_without_any_message_is_not_repaired_and_stays(tmp_path, capsys):
     assert main(['--repair', str(tmp_path)]) == 1
     assert 'no message in it can be read' in capsys.readouterr().err
     assert files_of(tmp_path) == {'bag.mcap': b'\x89MCAP0\r\n'}
+
+
+def write_raw(
+    path, schema='', encoding='ros2msg', hash='RIHS01_' + 'ab' * 32, qos='', data=b'int32 a'
+):
+    """Write an MCAP of two messages of a type of somebody's own, as a recorder that was killed leaves it."""
+    with path.open('wb') as file:
+        writer = McapWriter(file, compression=CompressionType.NONE)
+        writer.start()
+        schema = writer.register_schema(schema or 'robot_msgs/msg/Own', encoding, data)
+        metadata = {'offered_qos_profiles': qos} | ({'topic_type_hash': hash} if hash else {})
+        for _ in range(2):  # of the same topic, as two recorders in one have them
+            channel = writer.register_channel('/own', 'cdr', schema, metadata)
+            writer.add_message(channel, SECOND, b'\0\1\0\0\5\0\0\0', SECOND)
+        writer.finish()
+
+
+def test_a_bag_with_types_of_somebodys_own_is_repaired(tmp_path):
+    write_raw(tmp_path / 'bag.mcap')
+    assert main(['--repair', str(tmp_path)]) == 0
+    with (tmp_path / 'bag.mcap').open('rb') as file:
+        (schema, channel, message), (_, other, _) = make_reader(file).iter_messages()
+    assert (schema.name, schema.encoding, schema.data) == (
+        'robot_msgs/msg/Own',
+        'ros2msg',
+        b'int32 a',
+    )
+    assert channel.metadata['topic_type_hash'] == 'RIHS01_' + 'ab' * 32
+    assert channel.id == other.id
+    assert (channel.topic, message.log_time, message.data[4]) == ('/own', SECOND, 5)
+
+
+@pytest.mark.parametrize(
+    ('changes', 'reason'),
+    [
+        ({'hash': ''}, 'must have the hash of its type'),
+        ({'encoding': 'protobuf'}, 'must be defined as'),
+        ({'data': b'\xff'}, ''),
+        ({'qos': '- history: [', }, ''),
+        ({'qos': '3', }, ''),
+    ],
+)  # fmt: skip
+def test_a_topic_that_cannot_be_repaired_is_said_in_one_sentence(
+    tmp_path, capsys, changes, reason
+):
+    write_raw(tmp_path / 'bag.mcap', **changes)
+    before = files_of(tmp_path)
+    assert main(['--repair', str(tmp_path)]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith(f'bounce_record: {tmp_path}/bag.mcap: the topic /own: {reason}')
+    assert len(error.splitlines()) == 1
+    assert files_of(tmp_path) == before
+
+
+def test_bytes_changed_anywhere_in_a_bag_are_repaired_or_said(tmp_path, capsys):
+    options = ['--duration', 1, '--rate', 10, '--topics', 'poses', 'time', '--compress']
+    record('mixed', *options, '-o', tmp_path / 'mixed')
+    data = (tmp_path / 'mixed/mixed.mcap').read_bytes()
+    rng = np.random.default_rng(1)
+    capsys.readouterr()
+    for attempt in range(25):
+        broken = np.frombuffer(data, np.uint8).copy()
+        broken[rng.integers(0, len(data), 3)] = rng.integers(0, 256, 3)
+        folder = tmp_path / f'broken{attempt}'
+        folder.mkdir()
+        (folder / 'bag.mcap').write_bytes(broken)
+        status = main(['--repair', str(folder)])
+        out, error = capsys.readouterr()
+        assert (status, len(out.splitlines()), len(error.splitlines())) in ((0, 1, 0), (1, 0, 1))
 
 
 def limit_files():

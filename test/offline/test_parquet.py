@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pyarrow.dataset
-from conftest import wait_until
+from conftest import ROOT, wait_until
 from pyarrow import parquet
 from reading import SECOND, record
 
 from circle_bounce_ros.kernel import Simulation
+from circle_bounce_ros.offline.parquet import ParquetFolder
+from circle_bounce_ros.offline.record import main
 from circle_bounce_ros.scene_file import load_scene
 
 
@@ -37,6 +42,45 @@ def test_parquet_holds_the_states_of_the_kernel_with_units(tmp_path):
     scene = load_scene('mixed')
     assert circles['mass'] == [circle.mass for circle in scene.circles]
     assert bodies.schema.metadata[b'scene'] == b'mixed'
+
+
+# Dies in the middle of writing its second part, as by kill -9: nothing is cleaned up.
+DIES = """
+import os, sys
+from circle_bounce_ros.offline import parquet, record
+whole = parquet.parquet.write_table
+def write_table(table, path, **options):
+    if 'part-00001' in path.name:
+        path.write_bytes(b'PAR1')
+        os._exit(9)
+    whole(table, path, **options)
+parquet.parquet.write_table = write_table
+parquet.TICKS_A_PART = 10
+record.main(sys.argv[1:])
+"""
+
+
+def test_a_part_that_was_being_written_at_kill_9_is_no_data_to_any_reader(tmp_path, capsys):
+    folder = tmp_path / 'tables'
+    command = [sys.executable, '-c', DIES, 'mixed', '--format', 'parquet', '-o', str(folder)]
+    assert subprocess.run(command, cwd=ROOT, capture_output=True).returncode == 9
+    # Readers take a folder, what ends so in it, or all that ends so below: with hidden files, as some do.
+    assert [path.name for path in (folder / 'bodies').iterdir()] == ['part-00000.parquet']
+    for path in folder.rglob('*.parquet'):
+        assert parquet.read_table(path).num_rows > 0
+    left = set(folder.iterdir())
+    assert main(['--repair', str(folder)]) == 0
+    assert capsys.readouterr().out == f'{folder}: its tables are whole\n'
+    (torn,) = left - set(folder.iterdir())
+    assert torn.name.startswith('.')
+
+
+def test_tables_that_are_still_being_recorded_are_not_cleaned(tmp_path, capsys):
+    sink = ParquetFolder(tmp_path / 'tables', load_scene('lesson'))
+    assert main(['--repair', str(tmp_path / 'tables')]) == 1
+    assert 'is still being recorded, nothing was touched' in capsys.readouterr().err
+    sink.close()
+    assert main(['--repair', str(tmp_path / 'tables')]) == 0
 
 
 def test_after_kill_9_parquet_parts_are_whole(tmp_path, bounce):

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import io
+import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from conftest import files_of
 from reading import record
 
+from circle_bounce_ros.kernel import Circle, SceneError
+from circle_bounce_ros.offline import recording
 from circle_bounce_ros.offline.record import main
+from circle_bounce_ros.offline.recording import _circle, scene_text
+from circle_bounce_ros.scene_file import load_scene
+from circle_bounce_ros.scene_file.reading import LARGEST_FILE
 
 
 @pytest.mark.parametrize('options', [[], ['--compress'], ['--format', 'parquet']])
@@ -37,8 +44,10 @@ def test_an_existing_target_is_refused_and_nothing_is_touched(tmp_path, capsys, 
     [
         (['gaz'], 'scene: must be one of'),
         (['lesson', '--topics', 'poses', 'moon'], 'got moon'),
+        (['lesson', '--topics', 'poses', '/poses'], 'topics: must be given once, got poses twice'),
         (['lesson', '--rate', '0'], 'rate: must be > 0'),
         (['lesson', '--duration', '0.001'], 'duration: must be at least one period'),
+        (['lesson', '--duration', '1e9', '--rate', '1e6'], 'duration: must be at most 1000000000'),
         (['lesson', '--duration', 'nan'], 'duration: must be > 0'),
         (['lesson', '--frame-id', ''], 'frame-id: must not be empty'),
         (['lesson', '--format', 'parquet', '--topics', 'poses'], 'must be from bodies, contacts'),
@@ -92,3 +101,15 @@ def test_the_bar_on_a_terminal_tells_the_time_left(monkeypatch, tmp_path):
     record('gas', '--duration', 5, '--topics', 'poses', '-o', tmp_path / 'bag')
     assert 'left' in terminal.getvalue()
     assert '100%' in terminal.getvalue()
+
+
+def test_what_is_written_beside_a_recording_can_be_read_again(write_scene, monkeypatch):
+    """The largest scene of a hundred thousand circles, and one that is larger than any file may be."""
+    digits = 0.1234567890123456  # 16 of them, and a sign where there may be one
+    item = Circle((-digits, -digits), (-digits, -digits), radius=digits, mass=1e-10 + digits)
+    longest = json.dumps(_circle(replace(item, name='n' * 100)))
+    assert 100_000 * (len(longest) + len(', ')) < LARGEST_FILE - 1e6
+    scene = load_scene(write_scene(circles=[{'position': [0, 0], 'radius': 0.1}]))
+    monkeypatch.setattr(recording, 'LARGEST_FILE', 100)
+    with pytest.raises(SceneError, match='MB when written out'):
+        scene_text(scene)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
+import json
 import math
 import time
+from pathlib import Path
 
 import pytest
 
@@ -193,3 +196,31 @@ def test_what_a_recorder_hears_of_the_node_can_be_drawn(start, observer, lesson,
     assert sum(len(frame.contacts) for frame in frames) > 3
     assert plot.main(['energy', str(folder), '-o', str(tmp_path / 'energy.png')]) == 0
     assert plot.main(['free_path', str(folder), '-o', str(tmp_path / 'path.png')]) == 0
+
+
+def test_channels_have_the_hash_of_their_type_that_ros_itself_has(tmp_path):
+    """As rosbag2_storage_mcap writes it, so that a player can tell another version of a type."""
+    bag = tmp_path / 'bag'
+    assert main(['lesson', '--duration', '1', '-o', str(bag)]) == 0
+    with next(bag.glob('*.mcap')).open('rb') as file:
+        summary = make_reader(file).get_summary()
+    said = {}
+    for channel in summary.channels.values():
+        assert set(channel.metadata) == {'offered_qos_profiles', 'topic_type_hash'}
+        said[summary.schemas[channel.schema_id].name] = channel.metadata['topic_type_hash']
+    assert len(said) == 7
+    for name, found in said.items():
+        package, _, kind = name.split('/')
+        here = Path(importlib.import_module(package).__file__)
+        places = [folder / 'share' / package / 'msg' / f'{kind}.json' for folder in here.parents]
+        description = next(path for path in places if path.exists())
+        hashes = json.loads(description.read_text())['type_hashes']
+        assert found == next(h['hash_string'] for h in hashes if h['type_name'] == name)
+    # A repair keeps them.
+    (bag / 'metadata.yaml').unlink()
+    assert main(['--repair', str(bag)]) == 0
+    with next(bag.glob('*.mcap')).open('rb') as file:
+        again = make_reader(file).get_summary()
+    assert [c.metadata for c in again.channels.values()] == [
+        c.metadata for c in summary.channels.values()
+    ]

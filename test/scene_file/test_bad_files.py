@@ -87,7 +87,7 @@ def test_a_pipe_that_nobody_writes_to_is_refused_at_once(tmp_path):
 
 def test_a_file_of_more_than_10_mb_is_refused(write):
     path = write('#' * (reading.LARGEST_FILE + 1))
-    assert sentence(path) == f'{path}: must be at most 10 MB, got more'
+    assert sentence(path) == f'{path}: must be at most 50 MB, got more'
 
 
 @pytest.mark.parametrize('name', ['nosuch', '', 'Lesson', 'lesson '])

@@ -32,7 +32,7 @@ SHORTEST = 2  # of them, or browsers slow it down
 
 
 def animate(source: Source, path: Path) -> dict[str, float]:
-    """Write all frames of a source, each as long as it takes, and return how many there are."""
+    """Write all frames of a source as a GIF, each as long as it takes, and return how many there are."""
     still = _Drawing(view_of(source))
     still.draw_still(source.scene)
     radii = [circle.radius for circle in source.moving]
@@ -49,6 +49,7 @@ def animate(source: Source, path: Path) -> dict[str, float]:
         raise SourceError(f'{source.name}: must have at least two instants, got {len(times)}')
     pictures[0].save(
         path,
+        format='gif',
         save_all=True,
         append_images=pictures[1:],
         duration=durations(times),

@@ -59,9 +59,9 @@ def title(axes: Axes, text: str) -> None:
     axes.set_title(text, loc='left', fontsize=12.0, color=INK)
 
 
-def write(figure: Figure, path: Path, numbers: Mapping[str, float]) -> None:
-    """Write a PNG, with its numbers beside the pixels, or an SVG."""
-    if path.suffix == '.svg':
+def write(figure: Figure, path: Path, form: str, numbers: Mapping[str, float]) -> None:
+    """Write a figure as `png`, with its numbers beside the pixels, or as `svg`, whatever the file is called."""
+    if form == 'svg':
         figure.savefig(path, format='svg', facecolor='white', metadata={'Date': None})
         return
     raw = io.BytesIO()
@@ -70,7 +70,7 @@ def write(figure: Figure, path: Path, numbers: Mapping[str, float]) -> None:
     picture = with_palette(drawn, frequent_colours(drawn, PALETTE))
     info = PngInfo()
     info.add_text(NUMBERS_KEY, describe(numbers))
-    picture.save(path, optimize=True, pnginfo=info)
+    picture.save(path, format='png', optimize=True, pnginfo=info)
 
 
 def frequent_colours(picture: Image.Image, most: int) -> NDArray[np.uint8]:
