@@ -5,22 +5,24 @@ from __future__ import annotations
 import json
 import shutil
 import uuid
-from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from circle_bounce_ros.kernel import Scene, Simulation
-from circle_bounce_ros.offline.bag import Bag
+from circle_bounce_ros.offline.files import remove_begun
 from circle_bounce_ros.offline.observables import Observables
-from circle_bounce_ros.offline.parquet import ParquetFolder
 from circle_bounce_ros.offline.plan import Plan, Run, restore
 from circle_bounce_ros.offline.recording import Sink, moments
+from circle_bounce_ros.offline.sinks import open_sink, topics_to_record
+from circle_bounce_ros.offline.summary import read_row
 
 PLAN = 'plan.json'
 RUNS = 'runs'
 ROW = 'row.json'
 RECORDING = 'recording'
+# Where runs are until they are whole: beside the others, a reader of all recordings would find half of one.
+UNFINISHED = '.unfinished'
 
 RUNS_A_FOLDER = 1000  # more files in one folder make file systems slow
 
@@ -76,8 +78,8 @@ def perform(folder: str, digest: str, number: int) -> dict[str, Any]:
         run = plan.run(number)
         place = place_of(Path(folder), number)
         if (place / ROW).exists():
-            with suppress(ValueError):
-                row: dict[str, Any] = json.loads((place / ROW).read_text())
+            row = read_row((place / ROW).read_bytes(), plan)
+            if row and row['run'] == number:
                 return row
             # What cannot be read is done again.
             shutil.rmtree(place)
@@ -92,8 +94,8 @@ def _perform(plan: Plan, run: Run, place: Path) -> dict[str, Any]:
     if plan.record == 'none':
         return _simulate(plan, run, scene, None)
     place.parent.mkdir(parents=True, exist_ok=True)
-    begun = place.with_name(f'.{place.name}-{uuid.uuid4().hex}')
-    begun.mkdir()
+    begun = place.parents[2] / UNFINISHED / f'{place.name}-{uuid.uuid4().hex}'
+    begun.mkdir(parents=True)
     try:
         row = _simulate(plan, run, scene, begun / RECORDING)
         (begun / ROW).write_text(json.dumps(row) + '\n')
@@ -129,12 +131,12 @@ def _simulate(plan: Plan, run: Run, scene: Scene, recording: Path | None) -> dic
 def _sink(plan: Plan, scene: Scene, recording: Path | None) -> Sink | None:
     if recording is None:
         return None
-    if plan.record == 'parquet':
-        return ParquetFolder(recording, scene, plan.topics)
-    return Bag(recording, scene, topics=plan.topics)
+    # Once more, for names of circles may differ from run to run.
+    topics = None if plan.topics is None else topics_to_record(plan.topics, scene, plan.record)
+    return open_sink(recording, scene, plan.record, topics)
 
 
 def remove_unfinished(folder: Path) -> None:
-    """Remove what runs that were killed have left in the folder of runs."""
-    for begun in folder.glob('*/.*-*'):
-        shutil.rmtree(begun, ignore_errors=True)
+    """Remove what was killed in the middle from the folder of a sweep."""
+    remove_begun(folder)
+    shutil.rmtree(folder / UNFINISHED, ignore_errors=True)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import json
+from math import isfinite
 from pathlib import Path
 from typing import Any, TextIO
 
 import pyarrow as pa
 
+from circle_bounce_ros.offline.files import replace
 from circle_bounce_ros.offline.observables import COLUMNS
 from circle_bounce_ros.offline.parquet import write_table
 from circle_bounce_ros.offline.plan import Plan
@@ -19,27 +21,43 @@ SUMMARY = 'summary.parquet'
 SUMMARY_CSV = 'summary.csv'
 FAILURES = 'failures.jsonl'
 
+# No row is as long: it has the values of a file of less.
+LONGEST_LINE = 100_000_000  # bytes
+
 PARAMETER = 'parameter'  # what the metadata call a column of values that were chosen
 
 
-def replace(path: Path, text: str) -> None:
-    """Write a file that is whole as soon as it has its name."""
-    begun = path.with_name(f'.{path.name}')
-    begun.write_text(text)
-    begun.replace(path)
-
-
-def finished_rows(folder: Path) -> dict[int, dict[str, Any]]:
-    """Return the rows that are there. What was cut short in the middle of a line does not count."""
+def finished_rows(folder: Path, plan: Plan) -> tuple[dict[int, dict[str, Any]], int]:
+    """Return the rows that are there, and how many lines were no rows and are left out from now on."""
     path = folder / ROWS
     if not path.exists():
-        return {}
-    text = path.read_text()
-    whole = text[: text.rfind('\n') + 1]
-    if whole != text:
-        replace(path, whole)
-    rows = (json.loads(line) for line in whole.splitlines())
-    return {row['run']: row for row in rows}
+        return {}, 0
+    rows, damaged = {}, 0
+    with path.open('rb') as log:
+        for line in iter(lambda: log.readline(LONGEST_LINE), b''):
+            row = read_row(line, plan) if line.endswith(b'\n') else None
+            if row is None:
+                damaged += 1
+            else:
+                rows[row['run']] = row
+    if damaged:
+        replace(path, ''.join(json.dumps(row) + '\n' for row in rows.values()))
+    return rows, damaged
+
+
+def read_row(line: bytes, plan: Plan) -> dict[str, Any] | None:
+    """Return the row that a line says, None for anything that is no row of a finished run of this plan."""
+    try:
+        row: dict[str, Any] = json.loads(line)
+        run = plan.run(row['run'])
+        known = {'run': run.number, 'seed': run.seed, **run.parameters}
+        is_whole = 0 <= run.number < len(plan) and row.keys() == known.keys() | COLUMNS.keys()
+        is_ours = is_whole and {name: row[name] for name in known} == known
+        if not is_ours or not all(row[name] is None or isfinite(row[name]) for name in COLUMNS):
+            return None
+        return row
+    except (ValueError, TypeError, AttributeError, KeyError, OverflowError, RecursionError):
+        return None
 
 
 def add_line(log: TextIO, row: dict[str, Any]) -> None:

@@ -18,10 +18,12 @@ import dask
 from distributed import CancelledError, Client, KilledWorker, LocalCluster, wait
 from tqdm import tqdm
 
-from circle_bounce_ros.offline.plan import Plan, PlanError, load_plan
-from circle_bounce_ros.offline.run import PLAN, RUNS, perform, remove_unfinished
+from circle_bounce_ros.offline.files import ENDING, replace
+from circle_bounce_ros.offline.plan import Plan, PlanError, restore
+from circle_bounce_ros.offline.run import PLAN, perform, remove_unfinished
 from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping, without_interrupts
-from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, replace, write_summary
+from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, write_summary
+from circle_bounce_ros.offline.sweep_file import load_plan
 
 COMMAND = 'bounce_sweep'
 LAST_WORDS = f'{COMMAND}: interrupted, what is done is kept: start it again'
@@ -101,7 +103,8 @@ def locked(folder: Path, plan: Plan) -> Iterator[None]:
     """
     plan_file = folder / PLAN
     if folder.exists() and not plan_file.exists():
-        others = [path for path in folder.iterdir() if path.name not in (LOCK, f'.{PLAN}')]
+        ours = (LOCK, f'.{PLAN}{ENDING}')
+        others = [path for path in folder.iterdir() if path.name not in ours]
         if others:
             raise SweepError(f'{folder}: exists and is no sweep, nothing was touched')
     folder.mkdir(parents=True, exist_ok=True)
@@ -112,7 +115,7 @@ def locked(folder: Path, plan: Plan) -> Iterator[None]:
             raise SweepError(f'{folder}: another {COMMAND} is at work there') from None
         if not plan_file.exists():
             replace(plan_file, plan.dump())
-        elif plan_file.read_text() != plan.dump():
+        elif plan_in(plan_file) != plan:
             raise SweepError(
                 f'{folder}: holds a sweep with other settings, nothing was touched: '
                 'take another folder'
@@ -120,11 +123,35 @@ def locked(folder: Path, plan: Plan) -> Iterator[None]:
         yield
 
 
+def plan_in(path: Path) -> Plan:
+    """
+    Return the plan of a sweep that has been started.
+
+    Raises
+    ------
+    SweepError
+        For a damaged one: nothing says any more to which sweep the runs belong.
+
+    """
+    try:
+        return restore(path.read_text())
+    except ValueError as error:
+        raise SweepError(
+            f'{path}: cannot be read, nothing was touched: take another folder: {error}'
+        ) from None
+
+
 def sweep(plan: Plan, chosen: argparse.Namespace, stop: Stopping) -> int:
     """Do what is missing, write the summary, and return how many runs failed."""
     folder: Path = chosen.output.resolve()
-    remove_unfinished(folder / RUNS)
-    rows = finished_rows(folder)
+    remove_unfinished(folder)
+    rows, damaged = finished_rows(folder, plan)
+    if damaged:
+        print(
+            f'{chosen.output / ROWS}: {damaged} damaged line{"s" * (damaged > 1)} left out, '
+            'what is missing is done again',
+            file=sys.stderr,
+        )
     missing = (number for number in range(len(plan)) if number not in rows)
     left = len(plan) - len(rows)
     failures: dict[int, dict[str, Any]] = {}

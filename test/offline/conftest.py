@@ -87,3 +87,53 @@ def files_of(folder):
         for path in sorted(folder.rglob('*'))
         if path.is_file()
     }
+
+
+# A sweep of 3 x 2 short runs of a small gas.
+SMALL = {
+    'scene': './box.yaml',
+    'parameters': {'groups[0].packing': {'from': 0.1, 'to': 0.3, 'steps': 3}},
+    'seeds': {'first': 5, 'count': 2},
+    'duration': 4.0,
+    'warm_up': 1.0,
+    'rate': 20.0,
+}
+BOX = {
+    'groups': [
+        {
+            'count': 60,
+            'packing': 0.2,
+            'speed': {'maxwell': 1.0},
+            'region': {'min': [0, 0], 'max': [2, 2]},
+        }
+    ],
+    'walls': [{'box': {'min': [0, 0], 'max': [2, 2]}}],
+}
+
+
+@pytest.fixture
+def write_sweep(tmp_path, write_scene):
+    """Return a function that writes a sweep with changes and returns its path."""
+    write_scene('box', **BOX)
+
+    def write_sweep(name='sweep', **changes):
+        path = tmp_path / f'{name}.yaml'
+        path.write_text(json.dumps(SMALL | changes))
+        return path
+
+    return write_sweep
+
+
+def perform_here(sweep, folder):
+    """Carry out a sweep in this process, without Dask, and return its rows."""
+    from circle_bounce_ros.offline.run import perform
+    from circle_bounce_ros.offline.sweep_file import load_plan
+
+    plan = load_plan(sweep)
+    folder.mkdir()
+    (folder / 'plan.json').write_text(plan.dump())
+    return [perform(str(folder), plan.digest(), number) for number in range(len(plan))]
+
+
+def rows_of(folder):
+    return [json.loads(line) for line in (folder / 'rows.jsonl').read_text().splitlines()]

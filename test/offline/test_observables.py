@@ -10,8 +10,8 @@ import pytest
 
 from circle_bounce_ros.kernel import ContactKind, Simulation
 from circle_bounce_ros.offline import theory
-from circle_bounce_ros.offline.plan import load_plan
 from circle_bounce_ros.offline.run import perform
+from circle_bounce_ros.offline.sweep_file import load_plan
 
 
 @pytest.fixture

@@ -4,111 +4,27 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 import os
 import signal
 import socket
 from contextlib import ExitStack, suppress
 
 import pytest
-from conftest import files_of, wait_until
+from conftest import files_of, perform_here, rows_of, wait_until
 from processes import Cluster, Terminal, workers_of
 from pyarrow import parquet
 from rosbags.rosbag2 import Reader
 
-from circle_bounce_ros.offline.plan import PlanError, load_plan, restore
-from circle_bounce_ros.offline.run import perform, plan_of
+from circle_bounce_ros.offline.run import plan_of
 from circle_bounce_ros.offline.sweep import main
 
-SMALL = {
-    'scene': './box.yaml',
-    'parameters': {'groups[0].packing': {'from': 0.1, 'to': 0.3, 'steps': 3}},
-    'seeds': {'first': 5, 'count': 2},
-    'duration': 4.0,
-    'warm_up': 1.0,
-    'rate': 20.0,
-}
-BOX = {
-    'groups': [
-        {
-            'count': 60,
-            'packing': 0.2,
-            'speed': {'maxwell': 1.0},
-            'region': {'min': [0, 0], 'max': [2, 2]},
-        }
-    ],
-    'walls': [{'box': {'min': [0, 0], 'max': [2, 2]}}],
-}
 RESULTS = {'rows.jsonl', 'summary.parquet', 'summary.csv', 'failures.jsonl', 'plan.json'}
-
-
-@pytest.fixture
-def write_sweep(tmp_path, write_scene):
-    """Return a function that writes a sweep with changes and returns its path."""
-    write_scene('box', **BOX)
-
-    def write_sweep(name='sweep', **changes):
-        path = tmp_path / f'{name}.yaml'
-        path.write_text(json.dumps(SMALL | changes))
-        return path
-
-    return write_sweep
 
 
 def results_of(folder):
     """Return everything that a sweep gives, by name."""
     files = files_of(folder)
     return {name: data for name, data in files.items() if name != '.lock'}
-
-
-def perform_here(sweep, folder):
-    """Carry out a sweep in this process, without Dask, and return its rows."""
-    plan = load_plan(sweep)
-    folder.mkdir()
-    (folder / 'plan.json').write_text(plan.dump())
-    return [perform(str(folder), plan.digest(), number) for number in range(len(plan))]
-
-
-def rows_of(folder):
-    return [json.loads(line) for line in (folder / 'rows.jsonl').read_text().splitlines()]
-
-
-def test_every_combination_of_parameters_and_seeds_is_a_run(write_sweep):
-    plan = load_plan(
-        write_sweep(
-            parameters={'groups[0].packing': [0.1, 0.2], 'groups[0].speed.maxwell': [1, 2]}
-        )
-    )
-    runs = [plan.run(k) for k in range(len(plan))]
-    seen = [(r.seed, *r.parameters.values()) for r in runs]
-    assert seen == [(s, p, v) for p in (0.1, 0.2) for v in (1, 2) for s in (5, 6)]
-    scene = plan.build(runs[-1])
-    assert scene.seed == 6
-    area = sum(math.pi * circle.radius**2 for circle in scene.circles)
-    assert area / 4.0 == pytest.approx(0.2)
-    assert restore(plan.dump()) == plan
-
-
-@pytest.mark.parametrize(
-    ('changes', 'reason'),
-    [
-        ({'sedes': 1}, 'sedes: must be one of scene, duration'),
-        ({'duration': -1}, 'duration: must be > 0 s, got -1'),
-        ({'warm_up': 4.0}, 'warm_up: must be from 0 to < duration, got 4.0'),
-        ({'seeds': [1, 1]}, 'seeds: must be a list of different whole numbers'),
-        ({'parameters': {'groups[1].packing': [1]}}, 'leads nowhere in the scene, there is no 1'),
-        ({'parameters': {'groups[0].packing': 3}}, 'parameters.groups[0].packing: must be a list'),
-        ({'record': 'tape'}, "record: must be one of none, bag, parquet, got 'tape'"),
-        ({'scene': 'gaz'}, 'scene: must be one of'),
-        ({'rate': 0.01}, 'duration: must be at least one period'),
-    ],
-)
-def test_what_is_wrong_with_a_sweep_is_said(write_sweep, changes, reason):
-    path = write_sweep(**changes)
-    with pytest.raises(PlanError) as caught:
-        load_plan(path)
-    assert reason in str(caught.value)
-    assert str(caught.value).startswith(str(path))
 
 
 @pytest.mark.parametrize('record', ['bag', 'parquet'])
@@ -155,11 +71,11 @@ def test_started_again_after_a_kill_it_does_only_what_is_missing(tmp_path, bounc
     assert 3 <= len(done) < 24
     with log.open('a') as file:
         file.write('{"run": 23, "se')  # torn in the middle of a line
-    (folder / 'runs/000000/.000000023-cut').mkdir()
+    (folder / '.unfinished/000000023-cut').mkdir(parents=True)
     out = bounce.run('bounce_sweep', sweep, '-o', folder, '--workers', 1)
     assert '24 of 24 runs done, 0 failed' in out
     assert {path: path.stat().st_mtime_ns for path in done} == done
-    assert not list(folder.glob('runs/*/.*'))
+    assert not (folder / '.unfinished').exists()
     assert rows_of(folder) == perform_here(sweep, tmp_path / 'here')
     # And again: nothing at all is missing.
     before = results_of(folder)
@@ -204,18 +120,8 @@ def test_a_second_ctrl_c_on_a_terminal_ends_it_without_a_traceback(tmp_path, bou
     assert '120 of 120 runs done' in bounce.run('bounce_sweep', sweep, '-o', folder)
 
 
-def test_a_row_that_cannot_be_read_is_done_again(tmp_path, write_sweep):
-    sweep = write_sweep(record='bag')
-    rows = perform_here(sweep, tmp_path / 'here')
-    before = files_of(tmp_path / 'here')
-    (tmp_path / 'here/runs/000000/000000003/row.json').write_text('')
-    plan = load_plan(sweep)
-    assert perform(str(tmp_path / 'here'), plan.digest(), 3) == rows[3]
-    assert files_of(tmp_path / 'here') == before
-
-
 def has_a_run_in_its_hands(folder):
-    return bool(list(folder.glob('runs/*/.*')))
+    return bool(list(folder.glob('.unfinished/*')))
 
 
 def test_a_local_worker_killed_in_the_middle_is_replaced(tmp_path, bounce, write_sweep):
@@ -263,7 +169,7 @@ def test_a_worker_killed_in_the_middle_costs_nothing_but_time(
     folder = tmp_path / 'out'
     process = bounce.start('bounce_sweep', sweep, '-o', folder, '--scheduler', cluster.address)
     # Killed with a run in its hands.
-    wait_until(lambda: len(list(folder.glob('runs/*/.*'))) >= 2, 'two runs at work')
+    wait_until(lambda: len(list(folder.glob('.unfinished/*'))) >= 2, 'two runs at work')
     cluster.workers[0].kill()
     out, error = process.communicate(timeout=120)
     assert process.returncode == 0, error
