@@ -31,7 +31,7 @@ from circle_bounce_ros.encoding.topics import (
     feeds_of_a_scene,
     feeds_of_each_tick,
 )
-from circle_bounce_ros.kernel import Scene
+from circle_bounce_ros.kernel import Scene, SceneError
 from circle_bounce_ros.offline.recording import SCENE_FILE, lock, scene_text
 
 VERSION: Literal[9] = 9  # of rosbag2's metadata, that of ROS 2 Jazzy
@@ -39,6 +39,9 @@ METADATA = 'metadata.yaml'
 
 # What rosbag2 writes about a channel.
 QOS_KEY, HASH_KEY = 'offered_qos_profiles', 'topic_type_hash'
+
+# MCAP has 65,535 channels, and rosbags looks for each of them among all.
+MOST_TOPICS = 10_000
 
 # What ROS 2 calls a time without end: no deadline, no end of life.
 FOR_EVER = QosTime(sec=9223372036, nsec=854775807)
@@ -90,7 +93,7 @@ class Bag:
     OSError
         When the folder cannot be made.
     SceneError
-        When the scene is too large to be written beside it.
+        When the scene is too large to be written beside it, or has too many named circles.
 
     """
 
@@ -106,6 +109,9 @@ class Bag:
             return topics is None or topic.name in topics
 
         text = scene_text(scene)
+        count = sum(map(wanted, topics_of(scene)))
+        if count > MOST_TOPICS:
+            raise SceneError('topics', f'must be at most {MOST_TOPICS} in a bag, got {count}')
         self._writer = open_writer(folder, compress)
         self._lock = lock(folder)
         (folder / SCENE_FILE).write_text(text)

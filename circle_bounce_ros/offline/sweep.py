@@ -163,6 +163,9 @@ def sweep(plan: Plan, chosen: argparse.Namespace, stop: Stopping) -> int:
                 (failures if 'error' in row else rows)[row['run']] = row
                 if 'error' not in row:
                     add_line(log, row)
+        if not stop():
+            # After a stop a cluster of somebody else's may still be at work.
+            remove_unfinished(folder)
     write_summary(folder, plan, rows, failures)
     for number in sorted(failures):
         row = failures[number]

@@ -13,7 +13,7 @@ from conftest import files_of
 from reading import record
 
 from circle_bounce_ros.kernel import Circle, SceneError
-from circle_bounce_ros.offline import recording
+from circle_bounce_ros.offline import bag, recording
 from circle_bounce_ros.offline.record import main
 from circle_bounce_ros.offline.recording import _circle, scene_text
 from circle_bounce_ros.scene_file import load_scene
@@ -113,3 +113,25 @@ def test_what_is_written_beside_a_recording_can_be_read_again(write_scene, monke
     monkeypatch.setattr(recording, 'LARGEST_FILE', 100)
     with pytest.raises(SceneError, match='MB when written out'):
         scene_text(scene)
+
+
+def test_more_topics_than_a_bag_can_have_are_refused_before_it_is_begun(
+    tmp_path, capsys, write_scene, monkeypatch
+):
+    circles = [{'name': f'a{k}', 'position': [k, 0], 'radius': 0.1} for k in range(10)]
+    scene = str(write_scene(circles=circles))
+    monkeypatch.setattr(bag, 'MOST_TOPICS', 20)
+    assert main([scene, '--duration', '1', '-o', str(tmp_path / 'all')]) == 1
+    assert 'topics: must be at most 20 in a bag, got 27' in capsys.readouterr().err
+    assert not (tmp_path / 'all').exists()
+    some = [
+        scene,
+        '--duration',
+        '1',
+        '--topics',
+        'a1/pose',
+        'bodies',
+        '-o',
+        str(tmp_path / 'some'),
+    ]
+    assert main(some) == 0
