@@ -10,13 +10,10 @@ from typing import Any
 import numpy as np
 
 from circle_bounce_ros.kernel.overlap import Bodies, Overlap, deepest
+from circle_bounce_ros.kernel.ranges import LARGEST, SMALLEST, first_fault
 
 # A circle's name becomes part of a ROS topic. Checked here without `re`, so that the rule reads as one line.
 NAME_RULE = 'must be a letter followed by letters, digits or single underscores'
-
-# Squares of squares of these are still far from overflow and underflow.
-LARGEST = 1e60
-SMALLEST = 1e-60
 
 # Circles of a scene may overlap by this fraction of the smaller radius: rounding, not a fault.
 ALLOWED_OVERLAP = 1e-12
@@ -87,6 +84,9 @@ class Circle:
             raise SceneError(
                 'velocity', f'must be (0, 0) for a locked circle, got {self.velocity}'
             )
+        speed = math.hypot(*self.velocity)
+        if 0.0 < speed < SMALLEST:
+            raise SceneError('velocity', f'must be 0 or at least {SMALLEST:g} m/s, got {speed:g}')
         if self.name is not None and not is_legal_name(self.name):
             raise SceneError('name', f'{NAME_RULE}, got {self.name!r}')
 
@@ -154,7 +154,9 @@ class Scene:
             got = f'{len(self.circles)}, all locked' if self.circles else 'none'
             raise SceneError('circles', f'at least one must move, got {got}')
         self._check_names()
-        self._check_overlaps()
+        bodies = Bodies.of_scene(self)
+        self._check_ranges(bodies)
+        self._check_overlaps(bodies)
 
     def label(self, index: int) -> str:
         """Return how errors call a circle: its index, and its name if it has one."""
@@ -173,8 +175,13 @@ class Scene:
                 raise SceneError(f'circles[{index}].name', problem)
             first[circle.name] = index
 
-    def _check_overlaps(self) -> None:
-        found = deepest(Bodies.of_scene(self), allowed=ALLOWED_OVERLAP)
+    def _check_ranges(self, bodies: Bodies) -> None:
+        fault = first_fault(self, bodies)
+        if fault is not None:
+            raise SceneError(*fault)
+
+    def _check_overlaps(self, bodies: Bodies) -> None:
+        found = deepest(bodies, allowed=ALLOWED_OVERLAP)
         if found.depth > 0.0:
             raise SceneError('', self._describe(found))
 

@@ -186,7 +186,7 @@ def test_sums_of_large_and_small_lose_nothing():
     # 1e16 + 1 - 1e16, three times over: a plain sum gives 0.
     speeds = [1e16, 1.0, -1e16] * 3
     circles = [
-        Circle((0, 10.0 * k), (v, 2.0 * v), radius=1.0, mass=1.0) for k, v in enumerate(speeds)
+        Circle((0, 1e6 * k), (v, 2.0 * v), radius=1e5, mass=1.0) for k, v in enumerate(speeds)
     ]
     assert momentum(Simulation(Scene(circles))).tolist() == [3.0, 6.0]
 

@@ -107,7 +107,7 @@ def test_a_spoiled_file_gives_a_scene_or_one_line(seed, write):
         assert isinstance(result, Scene) or is_one_line_about(path, result)
         scenes += isinstance(result, Scene)
     # Some of them are fine: the values go all the way through, not only as far as the schema.
-    assert 5 <= scenes <= 60
+    assert 2 <= scenes <= 60
 
 
 @pytest.mark.parametrize('seed', range(4))

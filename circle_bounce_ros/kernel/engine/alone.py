@@ -17,6 +17,7 @@ from circle_bounce_ros.kernel.engine.loop import (
     DONE,
     ENDLESS,
     LOG_FULL,
+    is_beyond_clock,
     is_endless,
     set_clock_back,
 )
@@ -49,8 +50,10 @@ def run_alone(world: World, time: float) -> int:
             crowd = world.crowds[i]
             count = crowd.count
             ends = crowd.ends
-            while circle.time_of_hit <= until and circle.time_of_hit < world.span:
+            while circle.time_of_hit <= until:
                 now = circle.time_of_hit
+                if now >= world.span and now > state.late:
+                    break
                 if circle.kind != NOTHING:
                     if state.keep_log and state.notes == len(world.log):
                         crowd.count = count
@@ -63,14 +66,16 @@ def run_alone(world: World, time: float) -> int:
                     count += 1
                     if count > world.patience:
                         return ENDLESS
+                    state.just_set = 0
                     bounce_off(world, i, now)
                 follow(world, circle, now)
             earliest = min(earliest, circle.time_of_hit)
         if earliest > until:
             world.tree_time[1] = earliest
             return DONE
-        set_clock_back(world, earliest)
-        until = time - state.epoch
+        if is_beyond_clock(state, earliest):
+            set_clock_back(world, earliest)
+            until = time - state.epoch
 
 
 def run_alone_in_order(world: World, time: float, at_most: int) -> int:
@@ -94,7 +99,7 @@ def run_alone_in_order(world: World, time: float, at_most: int) -> int:
             return BUDGET_SPENT
         i = world.tree_who[1]
         now = world.tree_time[1]
-        if now >= world.span:
+        if now >= world.span and is_beyond_clock(state, now):
             set_clock_back(world, now)
             until = time - state.epoch
             continue
@@ -104,6 +109,7 @@ def run_alone_in_order(world: World, time: float, at_most: int) -> int:
                 return LOG_FULL
             if is_endless(world, i, now):
                 return ENDLESS
+            state.just_set = 0
             bounce_off(world, i, now)
         state.time = now
         follow(world, circle, now)

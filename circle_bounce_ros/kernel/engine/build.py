@@ -127,7 +127,8 @@ def _moving(scene: Scene) -> Array:
 def _along_a_curve(points: Array) -> Array:
     """Return the order of points along Morton's curve, on which most neighbours are near each other."""
     low, high = points.min(axis=0), points.max(axis=0)
-    cells = ((points - low) / (high - low).max() * 65535.0).astype(np.uint64)
+    extent = (high - low).max()
+    cells = ((points - low) / (extent if extent > 0.0 else 1.0) * 65535.0).astype(np.uint64)
     key = np.zeros(len(points), np.uint64)
     for bit in range(16):
         for axis in (0, 1):

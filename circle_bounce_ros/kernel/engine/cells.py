@@ -43,6 +43,11 @@ COARSE = 1.0 / (1.0 - GUEST)
 # No more cells than this along the longer side: memory.
 MOST_CELLS_A_SIDE = 4096
 
+# No more room in the lists of a table than for this many entries, or so many for each circle: memory. Where most
+# circles are in few cells, as beside one that is far away, lists are long: then there are fewer, shared by more cells.
+MOST_ROOM = 1 << 22
+MOST_ROOM_A_CIRCLE = 64
+
 # The shortest list of a cell has room for four circles: more of one size do not fit into a cell as wide as they are.
 LEAST_STRIDE = CIRCLES_AT + 4
 
@@ -67,9 +72,12 @@ def lay_out(moving: Array, posts: Array, flats: Array, collide: bool) -> Grid:
     """Return the grid for what moves and what is locked; who moves is told level and cell."""
     x0, y0, x1, y1 = _home(moving, posts)
     widths = _widths(moving['radius'], x1 - x0, y1 - y0, collide)
-    tables, around = _tables(widths, x1 - x0, y1 - y0)
     levels = len(widths)
-    moving['level'] = np.searchsorted(tables['fits'][:levels], moving['radius'])
+    for halvings in range(MOST_CELLS_A_SIDE.bit_length()):
+        tables, around = _tables(widths, x1 - x0, y1 - y0, halvings)
+        moving['level'] = np.searchsorted(tables['fits'][:levels], moving['radius'])
+        if not collide or _has_room(tables[:levels], moving, x0, y0):
+            break
     lists = _enter_moving(tables, moving, x0, y0, collide)
     locked = _enter_locked(tables[:levels], lists, posts, flats, x0, y0)
     return Grid(x0, y0, x1, y1, float(widths[-1]), tables, lists, around, *locked)
@@ -155,8 +163,12 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
     return np.array(widths[::-1])
 
 
-def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
-    """Return the tables of residents and of guests, without members, and each level's cells in reach."""
+def _tables(widths: Array, width: float, height: float, halvings: int) -> tuple[Array, Array]:
+    """
+    Return the tables of residents and of guests, without members, and each level's cells in reach.
+
+    Of as many lists as there are cells, half along each side for each halving.
+    """
     levels = len(widths)
     tables = np.zeros(2 * levels, TABLE)
     around: list[int] = []
@@ -165,7 +177,7 @@ def _tables(widths: Array, width: float, height: float) -> tuple[Array, Array]:
         columns, rows = (max(1, math.ceil(side / widths[level])) for side in (width, height))
         # Eight cells a side at least, so that five times five have a list each; the finest level has no guests.
         bits = [
-            max(2 if level == 0 else 3, _bits(cells)) if number != levels else 0
+            max(2 if level == 0 else 3, _bits(cells) - halvings) if number != levels else 0
             for cells in (columns, rows)
         ]
         table['width'] = widths[level]
@@ -196,6 +208,22 @@ def _offsets(reach: int, row: int) -> list[int]:
     left_right = [side * reach + step * row for side in (-1, 1) for step in steps]
     down_up = [side * reach * row + step for side in (-1, 1) for step in steps]
     return [*left_right, *down_up, *(x + y * row for x in steps for y in steps)]
+
+
+def _has_room(tables: Array, moving: Array, x0: float, y0: float) -> bool:
+    """Return whether lists as long as the longest, of who is on a level and of its guests, do not take too much."""
+    most = max(MOST_ROOM, MOST_ROOM_A_CIRCLE * len(moving))
+    for level, table in enumerate(tables):
+        there = moving[moving['level'] <= level]
+        column, row = (
+            np.floor((there[name] - zero) / table['width']).astype(np.int64)
+            for name, zero in (('x', x0), ('y', y0))
+        )
+        cell = (column + (row << table['bits'])) & table['mask']
+        longest = int(np.bincount(cell, minlength=1).max(initial=0))
+        if (int(table['mask']) + 1) * longest > most:
+            return False
+    return True
 
 
 def _enter_moving(tables: Array, moving: Array, x0: float, y0: float, collide: bool) -> Array:

@@ -40,7 +40,7 @@ def run(world: World, time: float, at_most: int) -> int:
                 return LIST_FULL
             side = circle.side
         elif is_contact(world, circle):
-            if now >= world.span:
+            if now >= world.span and is_beyond_clock(state, now):
                 set_clock_back(world, now)
                 until = time - state.epoch
                 continue
@@ -48,6 +48,7 @@ def run(world: World, time: float, at_most: int) -> int:
                 return LOG_FULL
             if is_endless(world, 0, now):
                 return ENDLESS
+            state.just_set = 0
             if circle.kind == CIRCLE:
                 partner = circle.partner
                 collide(world, i, partner, now)
@@ -84,6 +85,19 @@ def is_endless(world: World, number: int, now: float) -> bool:
     return endless
 
 
+def is_beyond_clock(state: Record, now: float) -> bool:
+    """
+    Return whether clocks must be set back before a contact that is due beyond the span.
+
+    Once before a contact is enough. It is due within the span then, or a circle is so slow that the rounding of its
+    place is worth more time than that: to set clocks back again would not bring it any closer, for ever.
+    """
+    if state.just_set != 0:
+        state.late = now
+    beyond: bool = now > state.late
+    return beyond
+
+
 def set_clock_back(world: World, now: float) -> None:
     """
     Set all clocks back by whole spans, so that digits do not wear out in long runs.
@@ -96,6 +110,8 @@ def set_clock_back(world: World, now: float) -> None:
     back = now - now % world.span  # exact, and no whole number that could be too large
     state.epoch += back
     state.time = max(state.time - back, 0.0)
+    state.late = 0.0
+    state.just_set = 1
     for number in range(len(world.crowds)):
         world.crowds[number].ends -= back
     # A cell that was entered between the new zero and now stays: nothing changes course in between.

@@ -71,11 +71,12 @@ NOTE = np.dtype(
 
 # All times in the world count from the epoch: clocks are set back before they grow beyond the span.
 STATE = np.dtype(
-    [(name, 'f8') for name in ('epoch', 'time')]
+    # late: contacts until then are carried out beyond the span too.
+    [(name, 'f8') for name in ('epoch', 'time', 'late')]
     + [(name, 'i8') for name in ('events', 'contacts', 'notes', 'away', 'keep_log')]
-    + [
-        ('in_order', 'i8')
-    ]  # whether the tournament holds the plans of circles that are followed alone
+    # just_set: clocks have been set back, and there was no contact since.
+    # in_order: the tournament holds the plans of circles that are followed alone.
+    + [(name, 'i8') for name in ('just_set', 'in_order')]
 )
 
 # Contacts that come close upon each other: how many there have been, and when the counting starts again.
