@@ -83,7 +83,7 @@ test: set-up check
 
 # Branch coverage of the plain engine, measured by the kernel's own tests. Mutants run in the bare environment.
 test-kernel: .venv
-	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-report=term-missing test/kernel \
+	$(BIN)/python -m pytest -p pytest_cov.plugin --cov --cov-fail-under=95 --cov-report=term-missing test/kernel \
 		--ignore=test/kernel/test_mutation.py --engine plain
 
 # Of the kernel's tests, those in which the engine runs.

@@ -4,9 +4,37 @@ import fcntl
 import os
 import random
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+
+# What folders of tests need and the package itself does not. Not `importorskip` in their conftest.py: that would
+# skip every test there is.
+NEEDS = {
+    'offline': ('rosbags', 'mcap', 'pyarrow', 'tqdm', 'distributed', 'matplotlib', 'PIL'),
+    'ros': ('rclpy',),
+    'viewer': ('rclpy', 'aiohttp'),
+}
+
+
+class SkippedModule(pytest.Module):
+    """A module of tests that is not imported."""
+
+    missing = ''
+
+    def collect(self):
+        pytest.skip(f'needs {self.missing}, which is not installed', allow_module_level=True)
+
+
+def pytest_pycollect_makemodule(module_path, parent):
+    folder = module_path.relative_to(Path(__file__).parent).parts[0]
+    missing = [name for name in NEEDS.get(folder, ()) if find_spec(name) is None]
+    if not missing:
+        return None
+    module = SkippedModule.from_parent(parent, path=module_path)
+    module.missing = ', '.join(missing)
+    return module
 
 
 @pytest.fixture(scope='session')

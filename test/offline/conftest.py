@@ -10,9 +10,6 @@ from pathlib import Path
 
 import pytest
 
-for library in ('rosbags', 'mcap', 'pyarrow', 'tqdm', 'distributed', 'matplotlib', 'PIL'):
-    pytest.importorskip(library, reason='recordings need the extra `offline`')
-
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 60.0  # s; only a fault takes that long
 
