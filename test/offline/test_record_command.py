@@ -7,6 +7,7 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from functools import partial
 
 import pytest
 from conftest import files_of
@@ -22,10 +23,10 @@ from circle_bounce_ros.scene_file.reading import LARGEST_FILE
 
 @pytest.mark.parametrize('options', [[], ['--compress'], ['--format', 'parquet']])
 def test_the_same_command_gives_the_same_bytes(tmp_path, bounce, options):
-    for place in ('a', 'b'):
+    command = ['mixed', '--duration', 2, *options, '-o']
+    for run, place in ((partial(bounce.run, 'bounce_record'), 'a'), (record, 'b')):
         (tmp_path / place).mkdir()
-        folder = tmp_path / place / 'out'
-        bounce.run('bounce_record', 'mixed', '--duration', 2, '-o', folder, *options)
+        run(*command, tmp_path / place / 'out')
     assert files_of(tmp_path / 'a') == files_of(tmp_path / 'b')
 
 
