@@ -146,3 +146,16 @@ def test_the_scenes_with_seams_have_walls_in_line_and_ends_on_walls():
     found = straighten(tuple(walls))
     assert len(found.flats) < len(walls) / 2
     assert len(found.parts) > 20
+
+
+@pytest.mark.parametrize('turns', [(), (0.5,), (1e-9,), (0.5, 0.75)])
+@pytest.mark.parametrize('seed', range(8))
+def test_a_circle_slides_past_the_end_of_a_wall_and_round_no_corner(turns, seed):
+    """Walls go on from there to the other side, by quarters of a turn, or none does."""
+    rng = random.Random(seed)
+    turn = 7.0 * rng.random()
+    end = ten_metres(turn)
+    beyond = [turn - math.pi * quarter for quarter in turns]
+    walls = [Wall((0.0, 0.0), end)]
+    walls += [Wall((end[0] + math.cos(a), end[1] + math.sin(a)), end) for a in beyond]
+    assert slide(walls, turn, until=20.0)[1] < 1e-15

@@ -139,13 +139,15 @@ def _along_a_curve(points: Array) -> Array:
 
 def _posts(scene: Scene, walls: Walls) -> Array:
     posts = [
-        (*circle.position, circle.radius, LOCKED, index)
+        (*circle.position, circle.radius, LOCKED, index, 0.0, 0.0, 0.0, 0.0)
         for index, circle in enumerate(scene.circles)
         if circle.locked
     ]
     posts += [
-        (*end, 0.0, WALL_END, number)
-        for end, number in zip(walls.ends.tolist(), walls.end_numbers.tolist(), strict=True)
+        (*end, 0.0, WALL_END, number, *beyond)
+        for end, number, beyond in zip(
+            walls.ends.tolist(), walls.end_numbers.tolist(), walls.beyond.tolist(), strict=True
+        )
     ]
     return np.array(posts, POST)
 

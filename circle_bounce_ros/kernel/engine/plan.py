@@ -14,6 +14,7 @@ from circle_bounce_ros.kernel.engine.records import (
     DOWN,
     EVERYWHERE,
     LEFT,
+    LOCKED,
     NOTHING,
     WALL,
     Record,
@@ -99,8 +100,9 @@ def plan_locked(world: World, circle: Record) -> None:
         number = world.post_numbers[k]
         post = world.posts[number]
         reach = radius + post.radius
-        due = time + time_to_touch_xy(x - post.x, y - post.y, vx, vy, reach, best - time)
-        if due < best:
+        wait = time_to_touch_xy(x - post.x, y - post.y, vx, vy, reach, best - time)
+        due = time + wait
+        if due < best and (post.kind == LOCKED or is_beyond_walls(circle, post, wait)):
             best = due
             circle.kind = post.kind
             circle.partner = number
@@ -115,6 +117,21 @@ def plan_locked(world: World, circle: Record) -> None:
             circle.kind = WALL
             circle.partner = number
     circle.time_of_hit = best
+
+
+def is_beyond_walls(circle: Record, post: Record, wait: float) -> bool:
+    """
+    Return whether a circle touches an end from beyond the walls that end there, not from beside them.
+
+    From beside them a wall is touched first, unless the circle slides along it: then rounding would make contacts of
+    grazes, which come some 1e-8 radii before the end. What is less than 1e-10 radii before it may be rounding too.
+    """
+    dx = circle.x + circle.vx * wait - post.x
+    dy = circle.y + circle.vy * wait - post.y
+    places = abs(circle.x) + abs(circle.y) + abs(post.x) + abs(post.y)
+    slack = 1e-10 * circle.radius + 1e-14 * places
+    beyond: bool = dx * post.ax + dy * post.ay >= -slack and dx * post.bx + dy * post.by >= -slack
+    return beyond
 
 
 def plan_cell(world: World, circle: Record, now: float) -> None:

@@ -34,8 +34,14 @@ MOVING = np.dtype(
     align=True,
 )
 
-# A locked circle, or the end of a wall as a circle of radius 0. The id is that of the circle or the wall.
-POST = np.dtype([('x', 'f8'), ('y', 'f8'), ('radius', 'f8'), ('kind', 'i8'), ('id', 'i8')])
+# A locked circle, or the end of a wall as a circle of radius 0. The id is that of the circle or the wall. An end is
+# touched only beyond the walls that end there, where these point to: (ax, ay) and (bx, by) are the outermost of their
+# directions, 0 for a locked circle.
+POST = np.dtype(
+    [(name, 'f8') for name in ('x', 'y', 'radius')]
+    + [('kind', 'i8'), ('id', 'i8')]
+    + [(name, 'f8') for name in ('ax', 'ay', 'bx', 'by')]
+)
 
 # The flat of a wall, or of several in line: where it starts, its unit normal (direction turned left), its length. One
 # of several has a range of `world.parts`; the id is that of the wall, or the lowest.

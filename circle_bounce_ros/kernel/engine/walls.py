@@ -41,6 +41,7 @@ class Walls(NamedTuple):
     parts: Array  # (p,) of dtype PART
     ends: Array  # (e, 2), m: the ends that can be touched
     end_numbers: Array  # (e,): of the walls that share an end the lowest
+    beyond: Array  # (e, 4): two directions of walls that end there, see POST
 
 
 class _Lines(NamedTuple):
@@ -57,7 +58,8 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
         first_of.setdefault(wall.start, number)
         first_of.setdefault(wall.end, number)
     if not walls:
-        return Walls(np.zeros(0, FLAT), np.zeros(0, PART), np.zeros((0, 2)), np.zeros(0, np.int64))
+        none = (np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros((0, 4)))
+        return Walls(np.zeros(0, FLAT), np.zeros(0, PART), *none)
     row_of = {point: row for row, point in enumerate(first_of)}
     points = np.array(list(first_of))
     ends = np.array([(row_of[wall.start], row_of[wall.end]) for wall in walls])
@@ -69,6 +71,7 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
     on = _points_on_walls(points, ends, lines, ROUNDINGS * rounding)
     flats: list[tuple[Any, ...]] = []
     parts: list[tuple[float, int]] = []
+    ending: list[list[tuple[float, float]]] = [[] for _ in points]
     for group in _groups(
         len(walls), *_pairs_in_line(points, ends, lines, ROUNDINGS * rounding, on)
     ):
@@ -79,6 +82,10 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
             lowest = line[0]
             frame = lines.frame[lowest]
             flats.append((*lines.start[lowest], *frame, lowest, begin, len(parts)))
+            first, last = _extremes(points, ends, line) if len(line) > 1 else ends[lowest]
+            nx, ny, _ = frame.tolist()
+            ending[first].append((-ny, nx))
+            ending[last].append((ny, -nx))
     on_wall, point = on
     along, _ = _place(points[point], lines, on_wall)
     close = ROUNDINGS * rounding[on_wall]
@@ -90,7 +97,19 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
         np.array(parts, PART),
         points[seen],
         np.array(list(first_of.values()))[seen],
+        np.array([_outermost(ending[point]) for point in seen.tolist()]).reshape(-1, 4),
     )
+
+
+def _outermost(directions: list[tuple[float, float]]) -> tuple[float, float, float, float]:
+    """Return the two of several directions that have all others between them; zeros if there are none."""
+
+    def is_first(a: tuple[float, float], sign: float) -> bool:
+        return all(sign * (a[0] * b[1] - a[1] * b[0]) >= 0.0 for b in directions)
+
+    first = [a for a in directions if is_first(a, 1.0)]
+    last = [a for a in directions if is_first(a, -1.0)]
+    return (*first[0], *last[0]) if first and last else (0.0, 0.0, 0.0, 0.0)
 
 
 def _place(points: Array, lines: _Lines, number: Any) -> tuple[Array, Array]:
