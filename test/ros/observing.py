@@ -171,12 +171,12 @@ class Observer:
         request = SetParameters.Request(parameters=[message])
         return self.call(SetParameters, f'{node}/set_parameters', request).results[0]
 
-    def set_together(self, node='/bounce', **values):
+    def set_together(self, node='/bounce', within=PATIENCE, **values):
         """Set several parameters at once and return the result."""
         messages = [
             Parameter(name, value=value).to_parameter_msg() for name, value in values.items()
         ]
         request = SetParametersAtomically.Request(parameters=messages)
         return self.call(
-            SetParametersAtomically, f'{node}/set_parameters_atomically', request
+            SetParametersAtomically, f'{node}/set_parameters_atomically', request, within
         ).result

@@ -89,11 +89,25 @@ def pause(page):
     wait_for_values(page, paused='true')
 
 
-def step(page):
-    """One step, seen on the picture."""
-    before = page.evaluate('bounce.world.seconds')
-    page.evaluate('bounce.node.step()')
-    wait_until(page, f'bounce.world.seconds !== {before} && !bounce.isDirty', 'the step is drawn')
+# Each step is asked for when the one before has been drawn.
+STEPS = """
+async (count) => {
+  const until = performance.now() + 30000;
+  for (let done = 0; done < count; done += 1) {
+    const before = bounce.world.seconds;
+    bounce.node.step();
+    while (bounce.world.seconds === before || bounce.isDirty) {
+      if (performance.now() > until) throw new Error(`${done} of ${count} steps were drawn`);
+      await new Promise((then) => setTimeout(then, 1));
+    }
+  }
+}
+"""
+
+
+def step(page, count=1):
+    """Take steps, each of them seen on the picture."""
+    page.evaluate(STEPS, count)
 
 
 def restart_paused(page):

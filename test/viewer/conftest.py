@@ -16,10 +16,13 @@ from browsing import (
     missing_browser,
     wait_for_circles,
     wait_for_values,
+    wait_until,
 )
 from observing import NodeProcess, Observer
 from scripting import BrowserScripts, NodeScripts
-from viewing import VIEWER, Stage, address_of, end_all
+from viewing import PATIENCE, VIEWER, Stage, address_of, end_all
+
+from circle_bounce_ros.scene_file import load_scene
 
 
 @pytest.fixture(scope='session')
@@ -63,7 +66,7 @@ def play(stage, observer):
 
     def play(scene='lesson', paused=False):
         observer.wait_for_node()
-        assert observer.set_together(scene=str(scene), seed=-1).successful
+        assert observer.set_together(scene=str(scene), seed=-1, within=PATIENCE).successful
         assert observer.set(time_scale=1.0).successful
         observer.pause(paused)
         observer.reset()
@@ -122,6 +125,15 @@ def show(stage, play, open_page):
         play(scene, paused)
         page = open_page(stage.address, **options)
         wait_for_circles(page, count)
+        # The scene's own circles, also where another one has as many, and what stands still in it.
+        wait_until(page, f'bounce.world.scene === {Path(scene).stem!r}')
+        if count < 1000:
+            still = load_scene(str(scene))
+            locked = sum(circle.locked for circle in still.circles)
+            wait_until(
+                page,
+                f'bounce.world.locked.length === {locked} && bounce.world.walls.length === {len(still.walls)}',
+            )
         wait_for_values(page, scene=Path(scene).stem, paused=str(paused).lower(), time_scale='1.0')
         return page
 

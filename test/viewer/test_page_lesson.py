@@ -65,15 +65,14 @@ def bounces_of_the_lesson(seconds):
     }
 
 
-def test_the_pages_steps_of_the_lesson_are_those_of_the_kernel(stage, open_page):
-    page = open_page(stage.address)
+def test_the_pages_steps_of_the_lesson_are_those_of_the_kernel(scripts):
     random = np.random.default_rng(20)
     velocities, normals, offsets = random.normal(size=(3, 200, 2))
     reaches = random.uniform(0.1, 1.5, 200)
-    page_says = page.evaluate(
+    page_says = scripts.evaluate(
         """
-        async ([velocities, normals, offsets, reaches]) => {
-          const lesson = await import('/lesson.js');
+        async (load, [velocities, normals, offsets, reaches]) => {
+          const lesson = await load('lesson.js');
           return velocities.map((v, i) => {
             const a = lesson.bounceAngles(v, normals[i]);
             const time = lesson.timeToTouch(offsets[i], v, reaches[i]);
@@ -99,13 +98,10 @@ def test_the_pages_steps_of_the_lesson_are_those_of_the_kernel(stage, open_page)
     assert (columns[8] == kernel.boxes_overlap(origin, halves, offsets, halves)).all()
 
 
-def test_angles_are_written_between_minus_180_and_180_degrees_and_zero_has_no_sign(
-    stage, open_page
-):
-    page = open_page(stage.address)
+def test_angles_are_written_between_minus_180_and_180_degrees_and_zero_has_no_sign(scripts):
     angles = [math.pi, -math.pi, 3 * math.pi, -0.5 * math.pi, 5.5 * math.pi, -1e-9, 2 * math.pi]
-    said = page.evaluate(
-        "(angles) => import('/lesson.js').then(({ showDegrees }) => angles.map(showDegrees))",
+    said = scripts.evaluate(
+        "async (load, angles) => angles.map((await load('lesson.js')).showDegrees)",
         angles,
     )
     assert said == ['180.0°', '180.0°', '180.0°', '−90.0°', '−90.0°', '0.0°', '0.0°']

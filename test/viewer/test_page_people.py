@@ -77,9 +77,8 @@ def contrast(*colours):
 
 
 @pytest.mark.parametrize('scheme', ['dark', 'light'])
-def test_what_is_written_over_the_picture_stands_out_from_it(stage, open_page, scheme):
-    page = open_page(stage.address, color_scheme=scheme)
-    look = page.evaluate('bounce.looks.colours')
+def test_what_is_written_over_the_picture_stands_out_from_it(scripts, scheme):
+    look = scripts.evaluate("async (load) => (await load('colours.js')).LOOKS")[scheme]
 
     def css(code):
         return f'rgb({", ".join(str(int(code[i : i + 2], 16)) for i in (1, 3, 5))})'

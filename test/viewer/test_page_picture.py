@@ -1,10 +1,11 @@
 """The picture shows what the topics say, where they say it."""
 
 import math
+import time
 
 import numpy as np
 import pytest
-from browsing import HIGH, WIDE, text_of, wait_until
+from browsing import HIGH, PATIENCE, WIDE, text_of, wait_until
 from observing import read_points
 from picture import Picture, rgb
 from sensor_msgs.msg import PointCloud2
@@ -30,17 +31,23 @@ def lanes(tmp_path):
     return path
 
 
-def bodies_of(picture, observer, heard):
-    """Return the points of the message that a picture was drawn from, by an own subscriber."""
+def stamp(message):
+    """Return the stamp of a message as the page has it."""
+    return f'{message.header.stamp.sec}.{message.header.stamp.nanosec:09d}'
 
-    def stamp(message):
-        return f'{message.header.stamp.sec}.{message.header.stamp.nanosec:09d}'
 
+def draw_heard(page, observer, heard):
+    """Return a picture of the page, and the points that it was drawn from by an own subscriber."""
+    observer.spin_until(lambda: heard, 'a message')
+    deadline = time.monotonic() + PATIENCE
+    # What the page shows may have been published before this subscriber was known.
+    while (picture := Picture(page)).stamp < stamp(heard[0]):
+        assert time.monotonic() < deadline, 'the page stands still'
     (message,) = observer.spin_until(
         lambda: [message for message in heard if stamp(message) == picture.stamp],
         'the message that was drawn',
     )
-    return read_points(message)
+    return picture, read_points(message)
 
 
 def assert_drawn(picture, bodies, shift=0.0):
@@ -65,8 +72,7 @@ def test_circles_are_drawn_where_the_topic_says(show, observer, lanes, size, sch
     heard = observer.listen(PointCloud2, 'bodies')
     page = show(lanes, len(LANES), size=size, color_scheme=scheme)
     page.evaluate("bounce.looks.setTrail(0); bounce.looks.chooseColours('identity')")
-    picture = Picture(page)
-    bodies = bodies_of(picture, observer, heard)
+    picture, bodies = draw_heard(page, observer, heard)
     # All of the box has to be in the picture.
     half = picture.pixels.shape[1] / 2 / picture.scale
     assert abs(picture.x) + 2.5 <= half
@@ -113,8 +119,11 @@ def test_100_000_circles_are_all_there_and_nowhere_else(show, observer, tmp_path
     page = show(path, 100000)
     page.evaluate('bounce.looks.setTrail(0)')
     picture = Picture(page)
-    # Nothing moves here, so any message is the one that was drawn.
-    points = read_points(observer.collect(heard, 1)[0])
+    # Nothing moves here, so any message of this scene is the one that was drawn.
+    (message, *_) = observer.spin_until(
+        lambda: [message for message in heard if message.width == 100000], 'all circles'
+    )
+    points = read_points(message)
     px, py = picture.place(points['x'].astype(float), points['y'].astype(float))
     near = np.zeros(picture.contrast.shape, bool)
     for right in range(-2, 3):
@@ -151,13 +160,12 @@ def test_zooming_in_keeps_what_is_partly_outside(show, lanes):
 
 
 def test_colours_by_circle_are_those_of_the_palette(show, observer, lanes):
+    heard = observer.listen(PointCloud2, 'bodies')
     page = show(lanes, len(LANES), paused=True)
     assert text_of(page, 'legend-title') == 'by circle'
-    picture = Picture(page)
-    heard = observer.listen(PointCloud2, 'bodies')
-    observer.collect(heard, 1)
     palette = page.evaluate("import('/colours.js').then(({ IDENTITY }) => IDENTITY)")
-    for body in bodies_of(Picture(page), observer, heard):
+    picture, bodies = draw_heard(page, observer, heard)
+    for body in bodies:
         shown = picture.colour(float(body['x']), float(body['y']))
         assert shown == pytest.approx(rgb(palette[body['id'] % len(palette)]), abs=2)
 
@@ -206,9 +214,8 @@ def lab(code, eye):
 
 
 @pytest.mark.parametrize('eye', SEEN_BY)
-def test_every_kind_of_eye_tells_the_colours_apart(stage, open_page, eye):
-    page = open_page(stage.address)
-    colours = page.evaluate("import('/colours.js').then((all) => ({ ...all }))")
+def test_every_kind_of_eye_tells_the_colours_apart(scripts, eye):
+    colours = scripts.evaluate("async (load) => ({ ...await load('colours.js') })")
     ramp = [lab(code, eye)[0] for code in colours['SPEED_RAMP']]
     steps = np.diff(ramp)
     # Even: no step is twice as large as the mean, or less than half of it.

@@ -255,4 +255,5 @@ def test_ctrl_c_ends_it_with_pages_open(stage):
     try:
         run(look())
     finally:
-        stage.start_viewer()
+        if stage.viewer.process.poll() is not None:
+            stage.start_viewer()

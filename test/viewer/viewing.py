@@ -5,6 +5,7 @@ import json
 import re
 import struct
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 
 import aiohttp
@@ -157,4 +158,6 @@ async def serving(**options):
 
 
 def run(work):
-    return asyncio.run(asyncio.wait_for(work, 3 * PATIENCE))
+    """Return what a coroutine returns, in a thread of its own: in this one a loop of Playwright may be running."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, asyncio.wait_for(work, 3 * PATIENCE)).result()
