@@ -26,8 +26,8 @@ DISTRIBUTIONS = {'PyYAML': 'yaml'}
 OPTIONAL = {'numba', 'rosbags', 'mcap', 'pyarrow', 'dask', 'distributed'}
 # Only for the commands that work without ROS.
 FOR_COMMANDS = {'python3-matplotlib', 'python3-pil', 'python3-tqdm'}
-# Used without an import: `ros2 launch`, and what it starts.
-COMMANDS = {'ros2launch', 'rviz2'}
+# Used without an import: `ros2 launch`. RViz is for who has a screen, not a dependency.
+COMMANDS = {'ros2launch'}
 
 
 @pytest.fixture(scope='module')
@@ -59,6 +59,19 @@ def test_it_is_a_manifest_of_format_3_for_ament_python(manifest):
     assert manifest.findtext('name') == PACKAGE
     assert manifest.findtext('export/build_type') == 'ament_python'
     assert '@' in manifest.find('maintainer').get('email')
+
+
+def test_authors_and_addresses_are_those_of_setup_py(manifest):
+    setup = (ROOT / 'setup.py').read_text()
+    addresses = {element.get('type'): element.text for element in manifest.findall('url')}
+    assert addresses == {
+        'website': re.search(r"\burl='(.+)'", setup)[1],
+        'repository': re.search(r"'Source': '(.+)'", setup)[1],
+        'bugtracker': re.search(r"'Bug Tracker': '(.+)'", setup)[1],
+    }
+    author = manifest.find('author')
+    assert author.text == re.search(r"\bauthor='(.+)'", setup)[1]
+    assert author.get('email') == re.search(r"author_email='(.+)'", setup)[1]
 
 
 def test_the_licence_is_in_the_file_that_it_names(manifest):
