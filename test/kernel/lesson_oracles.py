@@ -13,6 +13,11 @@ def exactly(message):
     return rf'\A{re.escape(message)}\Z'
 
 
+def refusal(place_and_rule):
+    """Return a pattern that accepts a refusal of this place and rule, however it goes on to show the value."""
+    return rf'\A{re.escape(place_and_rule)}(, .*)?\Z'
+
+
 def exact_root(value):
     """Return the root of a fraction to 60 digits."""
     with localcontext() as context:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from lesson_oracles import exactly
+from lesson_oracles import exactly, refusal
 
 from circle_bounce_ros.kernel import points
 
@@ -28,13 +28,13 @@ def test_one_point_is_two_plain_numbers():
 @pytest.mark.parametrize(
     ('value', 'problem'),
     [
-        (((1.0, 2.0),), 'must have shape (2,), got (1, 2)'),
-        (((1, 2), (3, 4)), 'must have shape (2,), got (2, 2)'),
-        ((1, 2, 3), 'must have shape (2,) or (n, 2), got (3,)'),
+        (((1.0, 2.0),), 'must have shape (2,)'),
+        (((1, 2), (3, 4)), 'must have shape (2,)'),
+        ((1, 2, 3), 'must have shape (2,) or (n, 2)'),
     ],
 )
 def test_many_points_are_refused_where_one_is_asked_for(value, problem):
-    with pytest.raises(ValueError, match=exactly(f'start: {problem}')):
+    with pytest.raises(ValueError, match=refusal(f'start: {problem}')):
         points.point(value, 'start')
 
 
@@ -48,34 +48,34 @@ def test_components_go_together_again():
 @pytest.mark.parametrize(
     ('value', 'problem'),
     [
-        (1.0, 'must have shape (2,) or (n, 2), got ()'),
-        ([], 'must have shape (2,) or (n, 2), got (0,)'),
-        ([1.0], 'must have shape (2,) or (n, 2), got (1,)'),
-        ([1.0, 2.0, 3.0], 'must have shape (2,) or (n, 2), got (3,)'),
-        ([[1.0, 2.0, 3.0]], 'must have shape (2,) or (n, 2), got (1, 3)'),
-        (np.zeros((2, 3, 2)), 'must have shape (2,) or (n, 2), got (2, 3, 2)'),
-        ([1.0, math.nan], 'must be finite, got [1.0, nan]'),
-        ([-math.inf, 0.0], 'must be finite, got [-inf, 0.0]'),
-        ([[0.0, 1.0], [2.0, math.inf]], 'must be finite, got [[0.0, 1.0], [2.0, inf]]'),
+        (1.0, 'must have shape (2,) or (n, 2)'),
+        ([], 'must have shape (2,) or (n, 2)'),
+        ([1.0], 'must have shape (2,) or (n, 2)'),
+        ([1.0, 2.0, 3.0], 'must have shape (2,) or (n, 2)'),
+        ([[1.0, 2.0, 3.0]], 'must have shape (2,) or (n, 2)'),
+        (np.zeros((2, 3, 2)), 'must have shape (2,) or (n, 2)'),
+        ([1.0, math.nan], 'must be finite'),
+        ([-math.inf, 0.0], 'must be finite'),
+        ([[0.0, 1.0], [2.0, math.inf]], 'must be finite'),
     ],
 )
 def test_no_vector_is_refused_by_name(value, problem):
-    with pytest.raises(ValueError, match=exactly(f'offset: {problem}')):
+    with pytest.raises(ValueError, match=refusal(f'offset: {problem}')):
         points.components(value, 'offset')
 
 
 @pytest.mark.parametrize(
     ('value', 'problem'),
     [
-        ([[1.0]], 'must be one number or have shape (n,), got (1, 1)'),
-        (math.nan, 'must be finite, got nan'),
-        ([1.0, -math.inf], 'must be finite, got [1.0, -inf]'),
-        (-1e-300, 'must be >= 0, got -1e-300'),
-        ([0.0, -1.0], 'must be >= 0, got [0.0, -1.0]'),
+        ([[1.0]], 'must be one number or have shape (n,)'),
+        (math.nan, 'must be finite'),
+        ([1.0, -math.inf], 'must be finite'),
+        (-1e-300, 'must be >= 0'),
+        ([0.0, -1.0], 'must be >= 0'),
     ],
 )
 def test_no_length_is_refused_by_name(value, problem):
-    with pytest.raises(ValueError, match=exactly(f'reach: {problem}')):
+    with pytest.raises(ValueError, match=refusal(f'reach: {problem}')):
         points.quantity(value, 'reach')
 
 
@@ -95,7 +95,7 @@ def test_a_length_may_be_zero_and_come_in_numbers():
 
 @pytest.mark.parametrize('value', [(0.0, 0.0), (0.0, -0.0), ((1.0, 0.0), (0.0, 0.0))])
 def test_the_zero_vector_has_no_direction(value):
-    with pytest.raises(ValueError, match=exactly('normal: must not be the zero vector')):
+    with pytest.raises(ValueError, match=refusal('normal: must not be the zero vector')):
         points.direction(value, 'normal')
 
 
