@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,9 +51,28 @@ class Simulation:
         self._ids = np.array([i for i, c in enumerate(scene.circles) if not c.locked], np.int64)
         self._radii = np.array([c.radius for c in scene.circles if not c.locked], np.float64)
         self._masses = np.array([c.mass for c in scene.circles if not c.locked], np.float64)
+        self._make_read_only()
+        self._start(record_contacts)
+
+    def _make_read_only(self) -> None:
         for array in (self._ids, self._radii, self._masses):
             array.flags.writeable = False
-        self._start(record_contacts)
+
+    def __copy__(self) -> Simulation:
+        """Return an independent simulation of the same bits, which goes on as this one would."""
+        twin: Simulation = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)
+        # What does not change is shared.
+        twin._driver = copy.copy(self._driver)
+        return twin
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
+        return copy.copy(self)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore what a pickle holds."""
+        self.__dict__.update(state)
+        self._make_read_only()
 
     def _start(self, record_contacts: bool) -> None:
         self._driver = drive(self._scene, record_contacts, self._compiled)

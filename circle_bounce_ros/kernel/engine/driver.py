@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine import build, cells, modes
+from circle_bounce_ros.kernel.engine import build, cells, compilation, modes
 from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS, LIST_FULL, LOG_FULL
-from circle_bounce_ros.kernel.engine.records import NOTE, World
+from circle_bounce_ros.kernel.engine.records import NOTE, World, aligned_copy
 from circle_bounce_ros.kernel.scene import Scene
 
 Array = NDArray[Any]
@@ -33,6 +33,10 @@ def drive(scene: Scene, keep_log: bool, compiled: bool | None) -> Driver:
     moving = sum(not circle.locked for circle in scene.circles)
     kind = Together if scene.moving_circles_collide and moving > 1 else Alone
     return kind(scene, keep_log, modes.choose(moving, compiled))
+
+
+def _copied(part: Any) -> Any:
+    return aligned_copy(part) if isinstance(part, np.ndarray) else part
 
 
 class Driver(ABC):
@@ -63,6 +67,32 @@ class Driver(ABC):
         self._state = modes.columns(arrays.state)
         self._moving = modes.columns(arrays.moving)
 
+    def _arrays(self) -> World:
+        """Return the world in arrays, in either mode."""
+        if self._mode.takes_arrays:
+            return self.world
+        return modes.to_arrays(self.world, self._types)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy or a pickle is made of: the world in arrays, which a world of objects is made from."""
+        state = self.__dict__.copy()
+        for derived in ('_mode', '_types', '_state', '_moving'):
+            del state[derived]
+        return state | {
+            'world': self._arrays(),
+            'compiled': self._mode.takes_arrays,
+            '_notes': list(self._notes),
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Become a copy that shares nothing; where numba is missing it goes on in plain Python, to the same bits."""
+        world = state.pop('world')
+        compiled = state.pop('compiled') and compilation.is_available()
+        self.__dict__.update(state)
+        self._mode = modes.compiled() if compiled else modes.PLAIN
+        self._types = World(*(_copied(part) for part in world))
+        self._enter(self._types)
+
     @abstractmethod
     def run(self, time: float, at_most: int | None) -> int:
         """Carry out all events up to a time, or about `at_most`; return DONE, BUDGET_SPENT or ENDLESS."""
@@ -89,10 +119,7 @@ class Driver(ABC):
         return why
 
     def _make_room(self) -> None:
-        arrays = self.world
-        if not self._mode.takes_arrays:
-            arrays = modes.to_arrays(self.world, self._types)
-        self._enter(cells.with_more_room(arrays))
+        self._enter(cells.with_more_room(self._arrays()))
 
     def get(self, name: str) -> Any:
         """Return a number of the world's state."""
