@@ -6,6 +6,7 @@ For floating-point parameters whole numbers are numbers too.
 
 from __future__ import annotations
 
+import re
 import traceback
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -22,7 +23,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
-from circle_bounce_ros.startup import ParameterRow
+from circle_bounce_ros.startup import ROS_ARGS, ParameterRow
 
 # What rclpy raises for malformed arguments, and when its context has ended.
 RCL_ERRORS = (rclpy_implementation.RCLError, rclpy_implementation.UnknownROSArgsError)
@@ -237,8 +238,10 @@ def checked(row: ParameterRow, value: Any) -> Any:
 
 
 def one_line(error: Exception) -> str:
-    """Return what an error says, in one line."""
-    return ' '.join(str(error).split())
+    """Return what an error says, in one line, without the places in the C library."""
+    if isinstance(error, rclpy_implementation.UnknownROSArgsError):
+        return f'arguments behind {ROS_ARGS} that ROS does not know: {error}'
+    return re.sub(r', at /\S+:\d+', '', ' '.join(str(error).split()))
 
 
 def describe(row: ParameterRow) -> ParameterDescriptor:

@@ -110,9 +110,9 @@ class RosLink:
         """Say something in the log of the node."""
         self._node.get_logger().info(text)
 
-    def count_publishers(self) -> int:
-        """Return how many publish `bodies`."""
-        return int(self._node.count_publishers(self.bodies_topic))
+    def publishers(self) -> list[str]:
+        """Return the full names of the nodes that publish `bodies`, sorted; more than one are a mistake."""
+        return self._node.other_publishers('bodies')
 
     def want_contacts(self, wanted: bool) -> None:
         """Subscribe to `contacts`, or no longer: the node records them for subscribers only."""

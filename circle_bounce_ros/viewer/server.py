@@ -182,7 +182,7 @@ class Server:
     def _status(self) -> dict[str, Any]:
         return {
             'type': 'status',
-            'publishers': self._link.count_publishers(),
+            'publishers': self._link.publishers(),
             'faults': self._faults,
         }
 

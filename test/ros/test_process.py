@@ -67,6 +67,7 @@ def test_a_second_signal_does_not_disturb_the_end(start, observer, lesson, green
         ),
         (['-p', 'qos_overrides./time.publisher.reliability:=some'], 'qos_overrides of time: '),
         (['-p', 'rate'], "parameter override rule: '-p rate'"),
+        (['stray'], "that ROS does not know: ['stray']"),
     ],
     ids=str,
 )

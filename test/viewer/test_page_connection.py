@@ -6,6 +6,7 @@ import threading
 
 import pytest
 from browsing import PATIENCE, press, text_of, wait_for_circles, wait_for_values, wait_until
+from sensor_msgs.msg import PointCloud2
 
 
 def wait_for_notice(page, words):
@@ -117,7 +118,7 @@ def test_what_cannot_be_read_is_said_in_words(lesson_page):
 
 SAY_FAULTS = """
 (faults) => {
-  bounce.hear({ type: 'status', publishers: 1, faults });
+  bounce.hear({ type: 'status', publishers: ['/bounce'], faults });
   const notice = document.getElementById('notice');
   return !notice.hidden && notice.innerText;
 }
@@ -128,6 +129,15 @@ def test_what_the_viewer_could_not_read_is_said_until_it_can(lesson_page):
     said = lesson_page.evaluate(SAY_FAULTS, {'contacts': 'cloud: nx must be finite'})
     assert 'contacts: cloud: nx must be finite' in said
     assert lesson_page.evaluate(SAY_FAULTS, {}) is False
+
+
+def test_two_simulations_on_one_topic_are_named_as_long_as_there_are_two(lesson_page, observer):
+    second = observer.node.create_publisher(PointCloud2, 'bodies', 10)
+    try:
+        wait_for_notice(lesson_page, '/bounce and /observer publish /bodies')
+    finally:
+        observer.node.destroy_publisher(second)
+    wait_until(lesson_page, "document.getElementById('notice').hidden", 'one simulation left')
 
 
 OPEN_SOCKET = """

@@ -194,7 +194,7 @@ def test_without_a_node_the_answer_says_so(lone_viewer):
     async def look():
         async with connected(lone_viewer) as page:
             status = await page.said(type='status')
-            assert status['publishers'] == 0
+            assert status['publishers'] == []
             await page.say(type='reset')
             answer = await page.said(type='answer')
             assert not answer['done']

@@ -136,8 +136,8 @@ class Nowhere:
     def want_contacts(self, wanted):
         self.wanted.put_nowait(wanted)
 
-    def count_publishers(self):
-        return 0
+    def publishers(self):
+        return []
 
     async def ask(self, request):
         return f'done: {request["type"]}'

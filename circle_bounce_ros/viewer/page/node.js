@@ -8,7 +8,7 @@ export class RemoteNode {
     this.send = send;
     this.values = {}; // of /diagnostics, as they were said
     this.topic = '';
-    this.publishers = null; // of that topic; null: not known
+    this.publishers = null; // names of the nodes that publish that topic; null: not known
     this.faults = {}; // what the viewer could not read, by channel
   }
 
