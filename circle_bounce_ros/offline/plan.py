@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from circle_bounce_ros.kernel import Scene
 from circle_bounce_ros.scene_file import build_scene
+from circle_bounce_ros.scene_file.wording import named, shown
 from circle_bounce_ros.schedule.recording import RecordingTicks
 
 STEP = re.compile(r'([A-Za-z_]\w*)((?:\[\d{1,9}\])*)')
@@ -184,8 +185,15 @@ def put(data: Any, place: str, value: Any) -> None:
     data[last] = value
 
 
+def under_parameters(place: str) -> str:
+    """Return how an error names a parameter."""
+    return f'parameters.{named(place)}'
+
+
 def _leads_nowhere(place: str, key: str | int) -> PlanError:
-    return PlanError(f'parameters.{place}', f'must be a place in the scene, got no {key} there')
+    return PlanError(
+        under_parameters(place), f'must be a place in the scene, got no {named(str(key))} there'
+    )
 
 
 def _holds(data: Any, key: str | int) -> bool:
@@ -208,6 +216,8 @@ def keys_of(place: str) -> list[str | int]:
     for part in place.split('.'):
         found = STEP.fullmatch(part)
         if not found:
-            raise PlanError('parameters', f'must be places like groups[0].packing, got {place!r}')
+            raise PlanError(
+                'parameters', f'must be places like groups[0].packing, got {shown(place)}'
+            )
         keys += [found[1], *(int(number) for number in re.findall(r'\d+', found[2]))]
     return keys

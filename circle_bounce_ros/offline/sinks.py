@@ -9,6 +9,7 @@ from circle_bounce_ros.kernel import Scene
 from circle_bounce_ros.offline.bag import Bag, topics_of
 from circle_bounce_ros.offline.parquet import TABLES, ParquetFolder
 from circle_bounce_ros.offline.recording import Sink
+from circle_bounce_ros.scene_file.wording import named, shortened
 
 BAG, PARQUET = 'bag', 'parquet'
 
@@ -36,18 +37,18 @@ def topics_to_record(names: Sequence[str], scene: Scene, form: str) -> tuple[str
     found = [name if name in topics else known.get(name.removeprefix('/')) for name in names]
     unknown = [name for name, topic in zip(names, found, strict=True) if topic is None]
     if unknown or not names:
-        got = ', '.join(unknown) or 'none'
-        raise TopicsError(f'must be from {_shortened(topics)}, got {got}')
+        got = shortened(', '.join(map(named, unknown))) or 'none'
+        raise TopicsError(f'must be from {_some(topics)}, got {got}')
     chosen = tuple(topic for topic in found if topic is not None)
     for place, topic in enumerate(chosen):
         if topic in chosen[:place]:
-            raise TopicsError(f'must be given once, got {topic} twice')
+            raise TopicsError(f'must be given once, got {named(topic)} twice')
     return chosen
 
 
-def _shortened(names: list[str], most: int = 20) -> str:
+def _some(names: list[str], most: int = 20) -> str:
     left = len(names) - most
-    return ', '.join(names[:most]) + (f' and {left} more' if left > 0 else '')
+    return ', '.join(map(named, names[:most])) + (f' and {left} more' if left > 0 else '')
 
 
 def open_sink(

@@ -25,12 +25,12 @@ from typing import Any
 
 from circle_bounce_ros.kernel import SceneError
 from circle_bounce_ros.offline.observables import COLUMNS
-from circle_bounce_ros.offline.plan import Plan, PlanError, keys_of, scene_with
+from circle_bounce_ros.offline.plan import Plan, PlanError, keys_of, scene_with, under_parameters
 from circle_bounce_ros.offline.sinks import BAG, PARQUET, TopicsError, topics_to_record
 from circle_bounce_ros.scene_file import read_scene
 from circle_bounce_ros.scene_file.loading import LARGEST_SEED
 from circle_bounce_ros.scene_file.schema import check
-from circle_bounce_ros.scene_file.wording import shown
+from circle_bounce_ros.scene_file.wording import inside, named, shown
 
 NONE = 'none'
 RECORDS = (NONE, BAG, PARQUET)
@@ -81,7 +81,9 @@ def _plan(given: Any, folder: Path) -> Plan:
     known = [*NEEDED, *DEFAULTS]
     for key in given:
         if key not in known:
-            raise PlanError(key, f'must be one of {", ".join(known)}, got an unknown key')
+            raise PlanError(
+                inside('', key), f'must be one of {", ".join(known)}, got an unknown key'
+            )
     for key in NEEDED:
         if key not in given:
             raise PlanError(key, 'must be given, got nothing')
@@ -116,7 +118,7 @@ def _scene(value: Any, folder: Path) -> tuple[str, dict[str, Any]]:
         scene = read_scene(folder / value if is_path else value)
     except SceneError as error:
         # A name that is unknown has this place already.
-        place = ': '.join(filter(None, ['scene', value, error.place]))
+        place = ': '.join(filter(None, ['scene', named(value), error.place]))
         raise PlanError('scene' if error.place == 'scene' else place, error.problem) from None
     if not isinstance(scene, dict):
         raise PlanError('scene', f'must be a scene file, got {shown(value)}')
@@ -189,13 +191,13 @@ def _parameters(given: Any, most: int) -> dict[str, list[Any]]:
     """Return the values of each place, of which there are `most` combinations at most."""
     if not isinstance(given, dict):
         raise PlanError('parameters', f'must be places and values, got {shown(given)}')
-    counts = {place: _count(values, f'parameters.{place}') for place, values in given.items()}
+    counts = {place: _count(values, under_parameters(place)) for place, values in given.items()}
     if math.prod(counts.values()) > most:
         raise PlanError(
             'parameters', f'must make at most {MOST_RUNS} runs with all seeds, got more'
         )
     _check_places(given)
-    return {place: _values(values, f'parameters.{place}') for place, values in given.items()}
+    return {place: _values(values, under_parameters(place)) for place, values in given.items()}
 
 
 def _check_places(places: dict[str, Any]) -> None:
@@ -204,16 +206,18 @@ def _check_places(places: dict[str, Any]) -> None:
     for place in places:
         keys = tuple(keys_of(place))
         if keys[0] in NO_PARAMETERS:
-            raise PlanError(f'parameters.{place}', f'must not be set: it {NO_PARAMETERS[keys[0]]}')
+            raise PlanError(
+                under_parameters(place), f'must not be set: it {NO_PARAMETERS[keys[0]]}'
+            )
         if place in COLUMNS:
             raise PlanError(
-                f'parameters.{place}', 'must not be called as a column of the summary: set parts'
+                under_parameters(place), 'must not be called as a column of the summary: set parts'
             )
         for other, name in seen.items():
             shorter = min(len(keys), len(other))
             if keys[:shorter] == other[:shorter]:
                 raise PlanError(
-                    f'parameters.{place}', f'must not be a part of {name}, or it of this'
+                    under_parameters(place), f'must not be a part of {named(name)}, or it of this'
                 )
         seen[keys] = place
 

@@ -26,6 +26,11 @@ def shown(value: Any) -> str:
     return shortened(repr(value) if isinstance(value, str) else json.dumps(value))
 
 
+def named(text: str) -> str:
+    """Return a place, path or topic as it is, or as a value is shown when that would not be one short line."""
+    return text if text and text.isprintable() and len(text) <= LONGEST_VALUE else shown(text)
+
+
 def shortened(text: str) -> str:
     """Return the text, cut when it is long."""
     return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + '...'

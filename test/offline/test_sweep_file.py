@@ -104,6 +104,28 @@ def test_an_error_says_file_place_rule_and_value(write_sweep):
     assert str(caught.value) == f'{path}: seeds[2]: must be given once, got 3 again'
 
 
+@pytest.mark.parametrize('name', ['a\n\u202eb', 'x' * 10_000])
+@pytest.mark.parametrize(
+    'changes',
+    [
+        lambda name: {name: 1},
+        lambda name: {'scene': f'{name}.yaml'},
+        lambda name: {'scene': name},
+        lambda name: {'parameters': {name: [1]}},
+        lambda name: {'parameters': {name: 3}},
+        lambda name: {'parameters': {f'groups[0].{name}': [0.1]}},
+        lambda name: {'record': 'bag', 'topics': [name]},
+    ],
+)
+def test_an_error_is_one_short_line_whatever_things_are_called(write_sweep, changes, name):
+    path = write_sweep(**changes(name))
+    with pytest.raises(PlanError) as caught:
+        load_plan(path)
+    sentence = str(caught.value).removeprefix(str(path))
+    assert sentence.isprintable()
+    assert len(sentence) < 600
+
+
 @pytest.mark.parametrize('topics', [['bodies', 'clock'], ['/bodies', '/clock']])
 def test_topics_are_recorded_with_and_without_a_leading_slash(write_sweep, topics):
     assert load_plan(write_sweep(record='bag', topics=topics)).topics == ('bodies', '/clock')
