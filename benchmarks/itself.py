@@ -104,7 +104,7 @@ def events_of(simulation: Simulation) -> Work:
 
 def events_so_far(simulation: Simulation) -> int:
     """Return how many contacts and changes of cell there have been; nobody else wants to know."""
-    return int(simulation._driver.get('events'))
+    return int(simulation._engine.get('events'))
 
 
 def cost_against_count(pace: Pace) -> tuple[list[Row], list[dict[str, float]]]:

@@ -17,8 +17,8 @@ from circle_bounce_ros.kernel.contact_record import (
     ContactField,
     ContactKind,
 )
+from circle_bounce_ros.kernel.engine.backends import compile_ahead
 from circle_bounce_ros.kernel.engine.compilation import compiled_code_is_ready
-from circle_bounce_ros.kernel.engine.modes import compile_ahead
 from circle_bounce_ros.kernel.impact import time_to_touch, time_to_wall
 from circle_bounce_ros.kernel.invariants import deepest_overlap, kinetic_energy, momentum
 from circle_bounce_ros.kernel.reflection import (

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.contact_record import CONTACT
-from circle_bounce_ros.kernel.engine.driver import drive
+from circle_bounce_ros.kernel.engine.engines import make_engine
 from circle_bounce_ros.kernel.engine.loop import DONE, ENDLESS
 from circle_bounce_ros.kernel.scene import Scene
 
@@ -63,7 +63,7 @@ class Simulation:
         twin: Simulation = object.__new__(type(self))
         twin.__dict__.update(self.__dict__)
         # What does not change is shared.
-        twin._driver = copy.copy(self._driver)
+        twin._engine = copy.copy(self._engine)
         return twin
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
@@ -75,7 +75,7 @@ class Simulation:
         self._make_read_only()
 
     def _start(self, record_contacts: bool) -> None:
-        self._driver = drive(self._scene, record_contacts, self._compiled)
+        self._engine = make_engine(self._scene, record_contacts, self._compiled)
         self._time = 0.0
 
     def reset(self) -> None:
@@ -91,7 +91,7 @@ class Simulation:
         time : float, s
             Not earlier than `.time`.
         at_most : int, optional
-            At least 1. Stop early after so many steps of work (contacts, plans and changes of cell), so that
+            At least 1. Stop early after so many steps of work (contacts, predictions and changes of cell), so that
             nobody waits longer than they want to; call again to go on. The last step may be one of many cells:
             up to 8,192 more.
 
@@ -115,21 +115,21 @@ class Simulation:
             raise ValueError(f'time: must not be before {self._time} s, got {time}')
         if at_most is not None and not at_most >= 1:
             raise ValueError(f'at_most: must be at least 1, got {at_most}')
-        why = self._driver.run(time, at_most)
+        why = self._engine.run(time, at_most)
         if why == DONE:
             self._time = time
             return True
         # Never beyond what was asked for, by a rounding either.
-        self._time = min(max(self._time, self._driver.reached), time)
+        self._time = min(max(self._time, self._engine.reached), time)
         if why == ENDLESS:
-            raise EndlessContactsError(self._describe_crowd())
+            raise EndlessContactsError(self._describe_cascade())
         return False
 
-    def _describe_crowd(self) -> str:
-        world = self._driver.world
+    def _describe_cascade(self) -> str:
+        world = self._engine.world
         return (
-            f'{self._scene.label(self._driver.crowded)}: contacts without end at {self._time:.9g} s, more than '
-            f'{world.patience} of them within {world.crowd_span:.3g} s'
+            f'{self._scene.label(self._engine.endless_circle)}: contacts without end at {self._time:.9g} s, more than '
+            f'{world.burst_limit} of them within {world.cascade_span:.3g} s'
         )
 
     @property
@@ -160,26 +160,26 @@ class Simulation:
     @property
     def positions(self) -> Floats:
         """The centres of the moving circles at `.time`, (n, 2), m."""
-        return self._driver.positions(self._time)
+        return self._engine.positions(self._time)
 
     @property
     def velocities(self) -> Floats:
         """The velocities of the moving circles at `.time`, (n, 2), m/s."""
-        return self._driver.velocities()
+        return self._engine.velocities()
 
     @property
     def contact_count(self) -> int:
         """How many contacts there have been since the first instant."""
-        return int(self._driver.get('contacts'))
+        return int(self._engine.get('contacts'))
 
     @property
     def record_contacts(self) -> bool:
         """Whether contacts are logged from here on."""
-        return bool(self._driver.get('keep_log'))
+        return bool(self._engine.get('keep_log'))
 
     @record_contacts.setter
     def record_contacts(self, wanted: bool) -> None:
-        self._driver.set('keep_log', int(wanted))
+        self._engine.set('keep_log', int(wanted))
 
     def drain_contacts(self) -> NDArray[np.void]:
         """
@@ -190,4 +190,4 @@ class Simulation:
         (k,) structured array of dtype `CONTACT`
 
         """
-        return self._driver.drain().astype(CONTACT)
+        return self._engine.drain().astype(CONTACT)

@@ -26,7 +26,7 @@ DRAWINGS: dict[str, Drawing] = {
     'reflection': bounce.reflection,
     'angles': bounce.angles,
     'exchange': bounce.exchange_of_velocities,
-    'plans': laws.plans,
+    'next_events': laws.next_events,
     'digits_of_pi': laws.digits_of_pi,
     'free_path': laws.free_path,
     'speeds': laws.speeds,

@@ -1,4 +1,4 @@
-"""Drawings of the laws that need no simulation to know, and of how the engine plans."""
+"""Drawings of the laws that need no simulation to know, and of how the engine predicts."""
 
 from __future__ import annotations
 
@@ -190,8 +190,8 @@ def speeds() -> tuple[Figure, Numbers]:
     }
 
 
-def plans() -> tuple[Figure, Numbers]:
-    """Draw what four circles plan to hit next, and the tournament that finds the earliest plan."""
+def next_events() -> tuple[Figure, Numbers]:
+    """Draw the next events of four circles, and the winner tree that finds the earliest."""
     width, height = 4.0, 3.0
     post = Circle((2.05, 1.35), radius=0.4, locked=True)
     moving = [
@@ -223,7 +223,7 @@ def plans() -> tuple[Figure, Numbers]:
         times.append(min(hits))
 
     figure, (left, right) = s.canvas(3.7, 1.15, 1.0)
-    s.plane(left, (-0.1, width + 0.1), (-0.1, height + 0.1), 'every circle has a plan')
+    s.plane(left, (-0.1, width + 0.1), (-0.1, height + 0.1), 'each circle has a next event')
     for wall in walls:
         s.wall(left, wall.start, wall.end)
     s.locked(left, post.position, post.radius)
@@ -236,12 +236,12 @@ def plans() -> tuple[Figure, Numbers]:
         s.arrow(left, (x, y), (vx * time, vy * time), color, width=1.6, head=11.0)
         speed = math.hypot(vx, vy)
         s.label(left, (x - 0.16 * vx / speed, y - 0.16 * vy / speed), str(k), s.MOVING)
-    _tournament(right, times)
+    _winner_tree(right, times)
     return figure, {f't of {k}': time for k, time in enumerate(times)}
 
 
-def _tournament(axes: Axes, times: list[float]) -> None:
-    s.plane(axes, (-0.6, 3.6), (-0.55, 2.7), 'the earliest plan wins')
+def _winner_tree(axes: Axes, times: list[float]) -> None:
+    s.plane(axes, (-0.6, 3.6), (-0.55, 2.7), 'the earliest event is at the root')
     leaves = [(float(k), 0.0) for k in range(4)]
     halves = [(0.5, 1.0), (2.5, 1.0)]
     root = (1.5, 2.0)

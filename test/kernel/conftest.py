@@ -2,7 +2,7 @@
 
 import pytest
 
-from circle_bounce_ros.kernel.engine import compilation, modes
+from circle_bounce_ros.kernel.engine import backends, compilation
 
 
 def pytest_addoption(parser):
@@ -17,7 +17,7 @@ def engine(request):
     if wanted == 'plain':
         patch.setattr(compilation, 'is_available', lambda: False)
     elif wanted == 'compiled':
-        patch.setattr(modes, 'FEW', 0)
+        patch.setattr(backends, 'PLAIN_UP_TO', 0)
         assert compilation.is_available(), 'numba is not installed'
     yield wanted
     patch.undo()

@@ -16,9 +16,9 @@ from circle_bounce_ros.kernel import (
     Wall,
     kinetic_energy,
 )
-from circle_bounce_ros.kernel.engine import cells, tournament
-from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide
-from circle_bounce_ros.kernel.engine.grid import gather
+from circle_bounce_ros.kernel.engine import event_queue, grid_layout
+from circle_bounce_ros.kernel.engine.broad_phase import query_neighbours
+from circle_bounce_ros.kernel.engine.collision_response import bounce_off, collide
 from circle_bounce_ros.kernel.engine.records import EVERYWHERE
 
 
@@ -31,10 +31,10 @@ def contacts_until(simulation, time):
 def plain(scene, **options):
     """Return a simulation and its world as objects that a test can look into."""
     simulation = Simulation(scene, compiled=False, **options)
-    return simulation, simulation._driver.world
+    return simulation, simulation._engine.world
 
 
-def is_away(world, i):
+def is_outside(world, i):
     return world.moving[i].level == world.levels
 
 
@@ -194,7 +194,7 @@ def test_circles_that_left_an_open_scene_still_meet():
 @pytest.mark.parametrize(('levels', 'radius'), [(1, 0.5), (2, 0.12)])
 def test_a_circle_comes_back_from_far_outside(levels, radius, monkeypatch):
     """
-    A light circle bounces off a locked one, catches up with a heavy one far out, and comes home.
+    A light circle bounces off a locked one, catches up with a heavy one far out, and comes back.
 
     On the way back it is in no cell of the grid: the locked circle must find it all the same. A large circle at rest
     makes it a guest of a second level of cells, which it leaves and enters as well.
@@ -203,8 +203,8 @@ def test_a_circle_comes_back_from_far_outside(levels, radius, monkeypatch):
     light = Circle((20.0, 0.0), (-speed, 0.0), radius=radius)
     heavy = Circle((21.5, 0.0), (1.0, 0.0), radius=radius, mass=1e12)
     large = [Circle((0.0, 10.0), radius=1.0)] * (levels - 1)
-    monkeypatch.setattr(cells, 'CROWDED', 0.01)
-    monkeypatch.setattr(cells, 'GAPS_A_CELL_OF_LEVELS', 0.01)
+    monkeypatch.setattr(grid_layout, 'SPLIT_ABOVE', 0.01)
+    monkeypatch.setattr(grid_layout, 'GAPS_A_CELL_OF_LEVELS', 0.01)
     scene = Scene([light, heavy, *large, locked(0.0, 0.0)])
     simulation, world = plain(scene, record_contacts=True)
     assert world.levels == levels
@@ -212,22 +212,22 @@ def test_a_circle_comes_back_from_far_outside(levels, radius, monkeypatch):
     first = (20.0 - near) / speed
     meeting = (21.5 - 2.0 * radius - near + speed * first) / (speed - 1.0)
     place = 21.5 + meeting - 2.0 * radius
-    home = meeting + (place - near) / (speed - 2.0)
+    back = meeting + (place - near) / (speed - 2.0)
     simulation.advance_to(meeting + 1.0)
-    assert is_away(world, 0)
-    simulation.advance_to(home + 1.0)
+    assert is_outside(world, 0)
+    simulation.advance_to(back + 1.0)
     contacts = simulation.drain_contacts()
     assert contacts['kind'].tolist() == [
         ContactKind.LOCKED,
         ContactKind.CIRCLE,
         ContactKind.LOCKED,
     ]
-    # The way home is slow: rounding and the finite mass are blown up by speed / (speed - 2).
-    assert np.allclose(contacts['time'], [first, meeting, home], rtol=1e-9)
+    # The way back is slow: rounding and the finite mass are blown up by speed / (speed - 2).
+    assert np.allclose(contacts['time'], [first, meeting, back], rtol=1e-9)
 
 
 def test_a_circle_still_in_the_grid_meets_one_that_has_just_left_it():
-    """At the edge of the porch one is in a cell and the other in none."""
+    """At the outer bounds of the grid one is in a cell and the other in none."""
 
     def scene(gap, slow):
         chaser = Circle((3.0, 0.0), (-1.0, 0.0), radius=0.5)
@@ -236,36 +236,36 @@ def test_a_circle_still_in_the_grid_meets_one_that_has_just_left_it():
     gap = 6.0
     _, world = plain(scene(gap, 0.1))
     width = world.tables[0].width
-    # A circle leaves the grid at the first border between cells beyond the porch and one cell more.
+    # A circle leaves the grid at the first border between cells beyond the outer bounds and one cell more.
     edge = world.x0
-    while edge <= world.porch_x1 + world.edge:
+    while edge <= world.outer_x1 + world.edge:
         edge += width
     there = edge + 0.3
     meeting = 2.0 + (there - 1.0 - 1.0) / 1.0
     slow = (there - 3.0 - gap) / meeting
     simulation, world = plain(scene(gap, slow), record_contacts=True)
     simulation.advance_to(meeting - 0.1)
-    assert [is_away(world, i) for i in range(2)] == [False, True]
+    assert [is_outside(world, i) for i in range(2)] == [False, True]
     simulation.advance_to(meeting + 1.0)
     contacts = simulation.drain_contacts()
     assert contacts['kind'].tolist() == [ContactKind.LOCKED, ContactKind.CIRCLE]
     assert math.isclose(contacts['time'][1], meeting, rel_tol=1e-12)
 
 
-def test_who_is_on_the_porch_or_away_looks_at_all_that_are_away():
+def test_a_circle_outside_the_grid_bounds_looks_at_all_that_are_outside():
     row = [Circle((4.0 * k, 0.0), (float(k > 1), 0.0), radius=0.5) for k in range(3)]
     simulation, world = plain(Scene([*row, locked(0.0, 5.0)]))
-    home, porch, away = world.moving
-    while not is_away(world, 2):
+    inside, between, outside = world.moving
+    while not is_outside(world, 2):
         simulation.advance_to(simulation.time + 1.0)
-    porch.column = world.tables[0].columns
+    between.column = world.tables[0].columns
 
     def seen_by(circle):
-        return world.near[: gather(world, circle, EVERYWHERE)]
+        return world.candidates[: query_neighbours(world, circle, EVERYWHERE)]
 
-    assert 2 not in seen_by(home)
-    assert 2 in seen_by(porch)
-    assert seen_by(away) == [0, 1, 2]
+    assert 2 not in seen_by(inside)
+    assert 2 in seen_by(between)
+    assert seen_by(outside) == [0, 1, 2]
 
 
 @pytest.mark.parametrize('kind', [ContactKind.CIRCLE, ContactKind.LOCKED])
@@ -291,7 +291,7 @@ def test_the_tournament_knows_the_earliest_time_and_whose_it_is():
     for _ in range(5000):
         i = rng.randrange(37)
         times[i] = rng.choice([1.0, 2.0, 3.0, math.inf, rng.random() * 4])
-        tournament.enter(world, i, times[i])
+        event_queue.update(world, i, times[i])
         assert world.tree_time[1] == min(times)
         assert times[world.tree_who[1]] == min(times)
 
@@ -303,8 +303,8 @@ def test_contacts_without_end_are_found_at_their_instant(others, collide):
     slot = [Wall((-5.0, 0.0), (9.0, 0.0)), Wall((-5.0, 1.0), (9.0, 1.0))]
     glides = Circle((0.0, 0.5), (1.0, 0.0), radius=0.5, name='stuck')
     busy = [Circle((0.0, 3.0 + 2.0 * k), (0.0, 0.3), radius=0.5) for k in range(others)]
-    post = locked(6.0, 0.9, 0.2)
-    scene = Scene([glides, *busy, post], slot, moving_circles_collide=collide)
+    locked_disk = locked(6.0, 0.9, 0.2)
+    scene = Scene([glides, *busy, locked_disk], slot, moving_circles_collide=collide)
     simulation = Simulation(scene, record_contacts=True)
     with pytest.raises(EndlessContactsError, match='stuck'):
         simulation.advance_to(20.0)

@@ -148,10 +148,10 @@ def test_a_refusal_tells_rule_and_value():
 
 
 def test_locked_circles_and_walls_may_be_as_small_as_they_like():
-    posts = [Circle((0.5, 0.0), radius=1e-60, locked=True)]
+    disks = [Circle((0.5, 0.0), radius=1e-60, locked=True)]
     walls = [Wall((0.0, 0.5), (0.0, 0.5 + 1e-16))]
     balls = [Circle((0.0, 0.0), v, radius=0.1) for v in ((1.0, 0.0), (0.0, 1.0))]
-    simulation = Simulation(Scene([*balls, *posts], walls, moving_circles_collide=False))
+    simulation = Simulation(Scene([*balls, *disks], walls, moving_circles_collide=False))
     simulation.advance_to(1.0)
     assert simulation.contact_count == 2
     assert np.allclose(simulation.velocities, [(-1.0, 0.0), (0.0, -1.0)])
@@ -177,5 +177,5 @@ def test_many_circles_beside_one_that_is_far_away_take_little_memory():
         Circle((3.0 * (k % 100), 3.0 * (k // 100)), (1.0, 0.5), radius=1.0) for k in range(3000)
     ]
     scene = Scene([*row, Circle((1e11, 1e11), radius=1.0)])
-    world = Simulation(scene, compiled=MODES[-1])._driver.world
+    world = Simulation(scene, compiled=MODES[-1])._engine.world
     assert len(world.lists) * 4 < 50e6

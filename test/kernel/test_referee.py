@@ -8,7 +8,14 @@ from random_scenes import KINDS, place, random_scene, two_levels
 from referee import CIRCLE, WALL, Fault, replay
 
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, Simulation, Wall
-from circle_bounce_ros.kernel.engine import build, cells, driver, grid, loop, plan
+from circle_bounce_ros.kernel.engine import (
+    broad_phase,
+    build,
+    engines,
+    grid_layout,
+    loop,
+    prediction,
+)
 from circle_bounce_ros.kernel.engine.records import CIRCLES_AT, COUNT_AT, NOTHING
 
 
@@ -45,14 +52,14 @@ def test_the_random_scenes_have_contacts_of_every_kind():
 
 def test_every_contact_is_the_earliest_possible_one_on_two_levels_of_cells():
     scene = two_levels(0)
-    assert Simulation(scene)._driver.world.levels == 2
+    assert Simulation(scene)._engine.world.levels == 2
     assert replay(scene, contacts_of(scene, 2.0), 2.0) > 150
 
 
 def test_referee_catches_an_engine_whose_large_circles_look_no_further_than_small_ones(
     monkeypatch,
 ):
-    monkeypatch.setattr(grid, 'FAR', grid.NEAR)
+    monkeypatch.setattr(broad_phase, 'FAR', broad_phase.NEAR)
     scene = two_levels(0)
     with pytest.raises(Fault):
         replay(scene, contacts_of(scene, 10.0, compiled=False), 10.0)
@@ -97,13 +104,13 @@ def test_referee_catches_a_forged_contact(honest, field, change):
 
 def test_referee_catches_an_engine_that_looks_in_its_own_cell_only(monkeypatch):
     def short_sighted(world, table, cell, side, reach, count):
-        at = grid.list_at(table, cell)
+        at = broad_phase.list_at(table, cell)
         members = world.lists[at + COUNT_AT]
         at += CIRCLES_AT
-        world.near[count : count + members] = world.lists[at : at + members]
+        world.candidates[count : count + members] = world.lists[at : at + members]
         return count + members
 
-    monkeypatch.setattr(grid, 'gather_around', short_sighted)
+    monkeypatch.setattr(broad_phase, 'query_cells', short_sighted)
     scene = random_scene('box', 0)
     with pytest.raises(Fault):
         replay(scene, contacts_of(scene, 20.0, compiled=False), 20.0)
@@ -114,7 +121,7 @@ def test_referee_catches_an_engine_that_forgets_a_wall():
     contacts = contacts_of(scene, 20.0)
     wall = int(contacts['b'][contacts['kind'] == WALL][0])
     simulation = Simulation(scene, record_contacts=True, compiled=False)
-    numbers = simulation._driver.world.flat_numbers
+    numbers = simulation._engine.world.segment_numbers
     numbers[:] = [
         (number + 1) % len(scene.walls) if number == wall else number for number in numbers
     ]
@@ -123,7 +130,7 @@ def test_referee_catches_an_engine_that_forgets_a_wall():
         replay(scene, simulation.drain_contacts(), 20.0)
 
 
-def test_referee_catches_an_engine_that_acts_on_stale_plans(monkeypatch):
+def test_referee_catches_an_engine_that_acts_on_void_events(monkeypatch):
     monkeypatch.setattr(loop, 'is_contact', lambda world, circle: circle.kind != NOTHING)
     caught = 0
     for seed in range(6):
@@ -141,16 +148,18 @@ def test_the_grid_changes_no_bit(kind, monkeypatch):
     scene = random_scene(kind, 5)
     until = duration(kind)
     with_grid = contacts_of(scene, until)
-    monkeypatch.setattr(grid, 'gather', lambda world, circle, side: grid.gather_everyone(world))
-    monkeypatch.setattr(plan, 'gather', grid.gather)
+    monkeypatch.setattr(
+        broad_phase, 'query_neighbours', lambda world, circle, side: broad_phase.query_all(world)
+    )
+    monkeypatch.setattr(prediction, 'query_neighbours', broad_phase.query_neighbours)
     without = Simulation(scene, record_contacts=True, compiled=False)
-    world = without._driver.world
-    world.near.extend([0] * len(world.moving))
-    world.post_numbers[:] = range(len(world.posts))
-    world.flat_numbers[:] = range(len(world.flats))
+    world = without._engine.world
+    world.candidates.extend([0] * len(world.moving))
+    world.disk_numbers[:] = range(len(world.disks))
+    world.segment_numbers[:] = range(len(world.segments))
     for reach in world.reaches:
-        reach.first_post, reach.end_post = 0, len(world.posts)
-        reach.first_flat, reach.end_flat = 0, len(world.flats)
+        reach.first_disk, reach.end_disk = 0, len(world.disks)
+        reach.first_segment, reach.end_segment = 0, len(world.segments)
     without.advance_to(until)
     assert with_grid.tobytes() == without.drain_contacts().tobytes()
     assert (with_grid['kind'] == CIRCLE).any() == (kind != 'pass_through')
@@ -158,7 +167,7 @@ def test_the_grid_changes_no_bit(kind, monkeypatch):
 
 def test_the_random_scenes_have_several_levels_of_cells():
     scene = random_scene('sizes', 0)
-    assert Simulation(scene, compiled=False)._driver.world.levels == 2
+    assert Simulation(scene, compiled=False)._engine.world.levels == 2
 
 
 @pytest.mark.parametrize('kind', KINDS)
@@ -166,11 +175,11 @@ def test_levels_of_cells_change_no_bit(kind, monkeypatch):
     """As many levels as sizes allow, against those that are worth their while."""
     scene = random_scene(kind, 6)
     ordinary = contacts_of(scene, duration(kind))
-    monkeypatch.setattr(cells, 'CROWDED', 0.01)
-    monkeypatch.setattr(cells, 'GAPS_A_CELL_OF_LEVELS', 0.1)
+    monkeypatch.setattr(grid_layout, 'SPLIT_ABOVE', 0.01)
+    monkeypatch.setattr(grid_layout, 'GAPS_A_CELL_OF_LEVELS', 0.1)
     many = Simulation(scene, record_contacts=True, compiled=False)
     if kind in ('mixed', 'sizes'):
-        assert many._driver.world.levels >= 2
+        assert many._engine.world.levels >= 2
     many.advance_to(duration(kind))
     assert ordinary.tobytes() == many.drain_contacts().tobytes()
 
@@ -180,10 +189,13 @@ def test_the_order_in_memory_changes_no_bit(kind, monkeypatch):
     scene = random_scene(kind, 1)
     ordinary = Simulation(scene, record_contacts=True)
     ordinary.advance_to(duration(kind))
-    monkeypatch.setattr(build, 'MANY', 1)
+    monkeypatch.setattr(build, 'MORTON_ABOVE', 1)
     sorted_ = Simulation(scene, record_contacts=True)
-    ranks = [circle.rank for circle in build.build(scene, keep_log=False).moving.view(np.recarray)]
-    assert ranks != sorted(ranks)
+    moving_indices = [
+        circle.moving_index
+        for circle in build.build(scene, keep_log=False).moving.view(np.recarray)
+    ]
+    assert moving_indices != sorted(moving_indices)
     sorted_.advance_to(duration(kind))
     assert ordinary.positions.tobytes() == sorted_.positions.tobytes()
     assert ordinary.velocities.tobytes() == sorted_.velocities.tobytes()
@@ -205,11 +217,11 @@ def test_lists_and_logs_that_are_full_get_room(compiled, monkeypatch):
     scene = Scene(circles, [Wall((-11.0, -11.0), (-11.0, 11.0))])
     ordinary = contacts_of(scene, 3.0, compiled=compiled)
     monkeypatch.setattr(build, 'LOG_BLOCK', 7)
-    monkeypatch.setattr(cells, 'GAPS_A_CELL', 2.0)
+    monkeypatch.setattr(grid_layout, 'GAPS_A_CELL', 2.0)
     simulation = Simulation(scene, record_contacts=True, compiled=compiled)
-    before = len(simulation._driver.world.lists)
+    before = len(simulation._engine.world.lists)
     simulation.advance_to(3.0)
-    assert len(simulation._driver.world.lists) > before
+    assert len(simulation._engine.world.lists) > before
     contacts = simulation.drain_contacts()
     assert contacts.tobytes() == ordinary.tobytes()
     assert replay(scene, contacts, 3.0) > 100
@@ -226,18 +238,18 @@ def test_plain_and_compiled_code_give_the_same_bits(kind):
 
 @pytest.mark.parametrize('compiled', [False, True])
 @pytest.mark.parametrize('kind', KINDS)
-def test_looking_ahead_changes_no_bit(kind, compiled, monkeypatch):
+def test_prefetching_changes_no_bit(kind, compiled, monkeypatch):
     if compiled:
         pytest.importorskip(
             'numba', reason='numba is not installed: there is only the plain engine'
         )
     scene = random_scene(kind, 2)
     straight = contacts_of(scene, duration(kind), compiled=compiled)
-    monkeypatch.setattr(build, 'VERY_MANY', 0)
+    monkeypatch.setattr(build, 'PREFETCH_ABOVE', 0)
     ahead = Simulation(scene, record_contacts=True, compiled=compiled)
     if not compiled:
-        ahead._driver.world.looks_ahead = True  # plain code never does: it would only take time
-    assert ahead._driver.world.looks_ahead
+        ahead._engine.world.prefetches = True  # plain code never does: it would only take time
+    assert ahead._engine.world.prefetches
     ahead.advance_to(duration(kind))
     assert len(straight) > 20
     assert straight.tobytes() == ahead.drain_contacts().tobytes()
@@ -245,12 +257,12 @@ def test_looking_ahead_changes_no_bit(kind, compiled, monkeypatch):
 
 @pytest.mark.parametrize('seed', range(4))
 def test_a_circle_that_moves_alone_does_what_the_queue_would_make_it_do(seed, monkeypatch):
-    crowd = random_scene('mixed', seed)
-    moving = [circle for circle in crowd.circles if not circle.locked]
-    locked = [circle for circle in crowd.circles if circle.locked]
-    scene = Scene([moving[0], *locked], crowd.walls)
+    crowded = random_scene('mixed', seed)
+    moving = [circle for circle in crowded.circles if not circle.locked]
+    locked = [circle for circle in crowded.circles if circle.locked]
+    scene = Scene([moving[0], *locked], crowded.walls)
     alone = contacts_of(scene, 5_000.0)  # so long that clocks are set back
-    monkeypatch.setattr(driver, 'Alone', driver.Together)
+    monkeypatch.setattr(engines, 'Independent', engines.Interacting)
     assert len(alone) > 200
     assert alone.tobytes() == contacts_of(scene, 5_000.0).tobytes()
 
@@ -259,7 +271,7 @@ def test_circles_followed_alone_do_what_the_queue_would_make_them_do(monkeypatch
     """Circles that pass through each other have a short cut of their own: same contacts, same bits."""
     scene = random_scene('pass_through', 4)
     alone = contacts_of(scene, 100.0)
-    monkeypatch.setattr(driver, 'Alone', driver.Together)
+    monkeypatch.setattr(engines, 'Independent', engines.Interacting)
     one_by_one = [
         contacts_of(Scene([circle, *(c for c in scene.circles if c.locked)], scene.walls), 100.0)
         for circle in scene.circles

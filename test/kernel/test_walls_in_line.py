@@ -9,7 +9,7 @@ import pytest
 from random_scenes import box, in_pieces, random_scene, regular_polygon
 
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, Simulation, Wall
-from circle_bounce_ros.kernel.engine.walls import straighten
+from circle_bounce_ros.kernel.engine.wall_segments import straighten
 
 
 def slide(walls, turn, side=1.0, start=1.0, until=8.0):
@@ -109,14 +109,14 @@ def test_a_polygon_with_its_sides_in_pieces_is_the_polygon():
 
 
 def test_what_bends_or_does_not_touch_stays_apart():
-    def flats(walls):
-        return len(straighten(tuple(walls)).flats)
+    def segments(walls):
+        return len(straighten(tuple(walls)).segments)
 
-    assert flats(box(0, 0, 1, 1)) == 4
-    assert flats(regular_polygon(3000, 1.0, 0.1)) == 3000
-    assert flats([Wall((0.0, 0.0), (1.0, 0.0)), Wall((1.0, 0.0), (2.0, 1e-14))]) == 2
-    assert flats([Wall((0.0, 0.0), (1.0, 0.0)), Wall((1.0 + 1e-14, 0.0), (2.0, 0.0))]) == 2
-    assert flats([Wall((0.0, 0.0), (1.0, 0.0)), Wall((0.0, 1e-14), (1.0, 1e-14))]) == 2
+    assert segments(box(0, 0, 1, 1)) == 4
+    assert segments(regular_polygon(3000, 1.0, 0.1)) == 3000
+    assert segments([Wall((0.0, 0.0), (1.0, 0.0)), Wall((1.0, 0.0), (2.0, 1e-14))]) == 2
+    assert segments([Wall((0.0, 0.0), (1.0, 0.0)), Wall((1.0 + 1e-14, 0.0), (2.0, 0.0))]) == 2
+    assert segments([Wall((0.0, 0.0), (1.0, 0.0)), Wall((0.0, 1e-14), (1.0, 1e-14))]) == 2
 
 
 def test_ends_inside_of_a_wall_cannot_be_touched():
@@ -144,7 +144,7 @@ def test_a_circle_is_not_lost_between_two_walls_in_line():
 def test_the_scenes_with_seams_have_walls_in_line_and_ends_on_walls():
     walls = random_scene('seams', 0).walls
     found = straighten(tuple(walls))
-    assert len(found.flats) < len(walls) / 2
+    assert len(found.segments) < len(walls) / 2
     assert len(found.parts) > 20
 
 

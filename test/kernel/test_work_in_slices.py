@@ -17,9 +17,9 @@ def in_slices(scene, until, at_most, most_calls, **options):
     calls = []
     arrived = False
     while not arrived:
-        before, contacts = simulation._driver.get('events'), simulation.contact_count
+        before, contacts = simulation._engine.get('events'), simulation.contact_count
         arrived = simulation.advance_to(until, at_most=at_most)
-        calls.append((simulation._driver.get('events') - before, simulation.time))
+        calls.append((simulation._engine.get('events') - before, simulation.time))
         assert simulation.contact_count - contacts <= at_most
         assert len(calls) <= most_calls
     return simulation, calls
@@ -75,7 +75,7 @@ def test_a_call_does_no_more_than_it_may_and_always_gets_on(name):
     scene, until = ODD[name]
     whole = Simulation(scene, record_contacts=True)
     whole.advance_to(until)
-    steps = whole._driver.get('events')
+    steps = whole._engine.get('events')
     simulation, calls = in_slices(scene, until, 100, most_calls=steps // 100 + 2)
     assert max(done for done, _ in calls) <= 100 + CELLS
     assert all(done >= 100 for done, _ in calls[:-1])
@@ -144,11 +144,11 @@ def test_of_several_contacts_without_end_the_first_is_told_and_no_other_contact_
     walls = [Wall((-50.0, 0.0), (50.0, 0.0)), Wall((-50.0, 1.0), (50.0, 1.0))]
     walls += box(-50, 10, 50, 12)
     free = [Circle((x, 11.0), (0.1, 3.0 + x), radius=0.25) for x in (0.0, 1.0)]
-    late, post = stuck(0.0)
+    late, disk = stuck(0.0)
     early, other = stuck(20.0)
-    post = Circle((5.0, 0.9), radius=0.2, locked=True)
+    disk = Circle((5.0, 0.9), radius=0.2, locked=True)
     scene = Scene(
-        [free[0], late, early, free[1], post, other], walls, moving_circles_collide=False
+        [free[0], late, early, free[1], disk, other], walls, moving_circles_collide=False
     )
     simulation = Simulation(scene, record_contacts=True)
     simulation.advance_to(1.0)  # what is in the log already stays there

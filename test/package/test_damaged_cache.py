@@ -9,7 +9,7 @@ import warnings
 import pytest
 
 from circle_bounce_ros.kernel import Circle, Scene, Simulation, compile_ahead
-from circle_bounce_ros.kernel.engine import code_cache, modes
+from circle_bounce_ros.kernel.engine import backends, code_cache
 from circle_bounce_ros.kernel.engine.code_cache import CodeCache, find, is_ready, write
 
 numba = pytest.importorskip('numba', reason='numba is not installed: there is nothing to compile')
@@ -192,8 +192,8 @@ def test_an_engine_that_cannot_be_compiled_runs_plain_with_one_warning(monkeypat
     def fail():
         raise RuntimeError('no LLVM here')
 
-    monkeypatch.setattr(modes, 'compiled', fail)
-    modes.fastest.cache_clear()
+    monkeypatch.setattr(backends, 'compiled', fail)
+    backends.fastest.cache_clear()
     scene = Scene([Circle((2.0 * x, 0.0), (1.0, 0.0), radius=0.1) for x in range(9)])
     try:
         with warnings.catch_warnings(record=True) as caught:
@@ -201,7 +201,7 @@ def test_an_engine_that_cannot_be_compiled_runs_plain_with_one_warning(monkeypat
             simulations = [Simulation(scene) for _ in range(3)]
             assert not compile_ahead()
     finally:
-        modes.fastest.cache_clear()
+        backends.fastest.cache_clear()
     assert ['no LLVM here' in str(warning.message) for warning in caught] == [True]
     for simulation in simulations:
         simulation.advance_to(1.0)

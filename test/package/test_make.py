@@ -72,7 +72,7 @@ def make_says(environment, *words):
             ['SCENE=my/own.yaml', 'ARGS=-p seed:=3'],
             "--ros-args -p 'scene:=my/own.yaml' -p seed:=3",
         ),
-        (['PORT=9000'], "--ros-args -p 'port:=9000'"),
+        (['PORT=9000'], "--ros-args -p 'bounce_viewer:port:=9000'"),
     ],
 )
 def test_make_run_passes_on_the_scene_and_the_arguments(environment, words, command):

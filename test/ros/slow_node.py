@@ -6,6 +6,7 @@ import time
 
 from circle_bounce_ros.kernel import Simulation
 from circle_bounce_ros.ros.main import main
+from circle_bounce_ros.schedule.slices import FIRST_SLICE
 
 SECONDS = float(os.environ['SECONDS_PER_SLICE'])
 
@@ -13,11 +14,11 @@ advance_to = Simulation.advance_to
 
 
 def advance_slowly(self, until, at_most=None):
-    """Take as long for each contact as the engine of an overburdened machine."""
+    """Take as long for each step of a slice as the engine of an overburdened machine."""
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
         pass
-    return advance_to(self, until, at_most=1 if at_most else None)
+    return advance_to(self, until, at_most=1 if at_most == FIRST_SLICE else at_most)
 
 
 Simulation.advance_to = advance_slowly

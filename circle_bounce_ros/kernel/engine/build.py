@@ -1,4 +1,4 @@
-"""A world from a scene: what moves, what is locked, the cells (`cells.py`) and the tournament."""
+"""A world from a scene: what moves, what is locked, the grid (`grid_layout.py`) and the event queue."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine.cells import lay_out, scratch
-from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN
+from circle_bounce_ros.kernel.engine.broad_phase import CELL_MARGIN
+from circle_bounce_ros.kernel.engine.grid_layout import lay_out, scratch
 from circle_bounce_ros.kernel.engine.records import (
-    CROWD,
+    CASCADE,
+    DISK,
     LOCKED,
+    LOG_ENTRY,
     MOVING,
-    NOTE,
     NOTHING,
-    POST,
     STATE,
     WALL_END,
     World,
     aligned_zeros,
 )
-from circle_bounce_ros.kernel.engine.walls import Walls, straighten
+from circle_bounce_ros.kernel.engine.wall_segments import Walls, straighten
 from circle_bounce_ros.kernel.impact import NEVER
 from circle_bounce_ros.kernel.scene import Scene
 
@@ -31,100 +31,103 @@ Array = NDArray[Any]
 # Every number below is a choice that costs time or memory when it is wrong, never a digit, but for the first.
 
 # A circle travels about so many radii before the clocks are set back. More: contact instants lose digits
-# (at 1,000 radii about 1e-13 of a radius). Less: the planning afresh that goes with it costs time.
+# (at 1,000 radii about 1e-13 of a radius). Less: the prediction of all events that goes with it costs time.
 RADII_PER_SPAN = 1024.0
 
-# More than PATIENCE + PATIENCE_PER_CIRCLE n contacts while nothing travels further than CROWD_RADII radii are
-# contacts without end. Less patience could refuse a long chain of simultaneous contacts, or the 180 / a bounces of a
-# circle that runs into a wedge of a degrees: these are 18,000 at 0.01. More: a scene without end is found later. Of
-# circles that pass through each other each is counted on its own, n = 1.
-PATIENCE = 20_000
-PATIENCE_PER_CIRCLE = 100
-CROWD_RADII = 1e-9
+# More than BURST_LIMIT + BURST_LIMIT_PER_CIRCLE n contacts while nothing travels further than CASCADE_RADII are
+# contacts without end. A lower limit could refuse a long chain of simultaneous contacts, or the 180 / a bounces of a
+# circle that runs into a wedge of a degrees: these are 18,000 at 0.01. A higher one finds a scene without end later.
+# Of circles that pass through each other each is counted on its own, n = 1.
+BURST_LIMIT = 20_000
+BURST_LIMIT_PER_CIRCLE = 100
+CASCADE_RADII = 1e-9
 
 # Contacts are logged in blocks of so many.
 LOG_BLOCK = 4096
 
 # More circles than this do not fit into the processor's cache. They are kept in an order in which neighbours are near
 # each other in memory, which is up to twice as fast; it also decides between contacts at the very same instant.
-MANY = 4096
+MORTON_ABOVE = 4096
 
-# Among more than this the engine looks ahead: events of 100,000 then take two thirds of the time. Among fewer, the
-# looking itself costs more than it saves.
-VERY_MANY = 16_384
+# Among more than this the engine prefetches: events of 100,000 then take two thirds of the time. Among fewer, the
+# prefetching itself costs more than it saves.
+PREFETCH_ABOVE = 16_384
 
 
 def build(scene: Scene, keep_log: bool) -> World:
     """Return the world of a scene at time zero, in arrays."""
     moving = _moving(scene)
     walls = straighten(tuple(scene.walls))
-    posts = _posts(scene, walls)
-    grid = lay_out(moving, posts, walls.flats, scene.moving_circles_collide)
+    disks = _disks(scene, walls)
+    grid = lay_out(moving, disks, walls.segments, scene.moving_circles_collide)
     count = len(moving)
     rounds = (count - 1).bit_length()
     leaf = 1 << rounds
-    tree_time, tree_who = _tournament(count, leaf)
+    tree_time, tree_who = _event_queue(count, leaf)
     state = np.zeros(1, STATE)
     state['keep_log'] = keep_log
     state['in_order'] = True
-    crowds = np.zeros(count if not scene.moving_circles_collide else 1, CROWD)
-    crowds['ends'] = -NEVER
+    cascades = np.zeros(count if not scene.moving_circles_collide else 1, CASCADE)
+    cascades['ends'] = -NEVER
     travel = _typical_speed(moving) / float(moving['radius'].min())
-    # A cell of home may end a width beyond it; who is away must be a diameter further.
+    # A cell may end a width beyond the grid bounds; a circle outside must be a diameter further.
     widest = 2.0 * float(moving['radius'].max())
     far = max(grid.x1 - grid.x0, grid.y1 - grid.y0, grid.widest + widest * (1.0 + CELL_MARGIN))
     return World(
         moving=moving,
-        posts=posts,
-        flats=walls.flats,
+        disks=disks,
+        segments=walls.segments,
         parts=walls.parts,
         tables=grid.tables,
         lists=grid.lists,
         reaches=grid.reaches,
-        near=scratch(grid.tables, count),
-        around=grid.around,
-        away=np.zeros(count, np.int32),
-        post_numbers=grid.post_numbers,
-        flat_numbers=grid.flat_numbers,
+        candidates=scratch(grid.tables, count),
+        neighbour_offsets=grid.neighbour_offsets,
+        outside=np.zeros(count, np.int32),
+        disk_numbers=grid.disk_numbers,
+        segment_numbers=grid.segment_numbers,
         tree_time=tree_time,
         tree_who=tree_who,
-        log=np.zeros(LOG_BLOCK, NOTE),
+        log=np.zeros(LOG_BLOCK, LOG_ENTRY),
         state=state,
-        crowds=crowds,
+        cascades=cascades,
         leaf=leaf,
         rounds=rounds,
-        looks_ahead=count > VERY_MANY,
+        prefetches=count > PREFETCH_ABOVE,
         levels=len(grid.tables) // 2,
         x0=grid.x0,
         y0=grid.y0,
-        porch_x0=grid.x0 - far,
-        porch_y0=grid.y0 - far,
-        porch_x1=grid.x1 + far,
-        porch_y1=grid.y1 + far,
+        outer_x0=grid.x0 - far,
+        outer_y0=grid.y0 - far,
+        outer_x1=grid.x1 + far,
+        outer_y1=grid.y1 + far,
         edge=grid.widest,
         span=_power_of_two(RADII_PER_SPAN / travel) if travel > 0.0 else 1.0,
-        crowd_span=CROWD_RADII / travel if travel > 0.0 else 1.0,
-        patience=PATIENCE + PATIENCE_PER_CIRCLE * (count if scene.moving_circles_collide else 1),
+        cascade_span=CASCADE_RADII / travel if travel > 0.0 else 1.0,
+        burst_limit=BURST_LIMIT
+        + BURST_LIMIT_PER_CIRCLE * (count if scene.moving_circles_collide else 1),
     )
 
 
 def _moving(scene: Scene) -> Array:
     circles = [(index, c) for index, c in enumerate(scene.circles) if not c.locked]
-    if len(circles) > MANY:
-        circles = [circles[k] for k in _along_a_curve(np.array([c.position for _, c in circles]))]
+    if len(circles) > MORTON_ABOVE:
+        circles = [
+            circles[k] for k in _along_mortons_curve(np.array([c.position for _, c in circles]))
+        ]
     moving = aligned_zeros(len(circles), MOVING)
     moving['id'] = [index for index, _ in circles]
-    moving['rank'] = np.argsort(np.argsort(moving['id']))
+    moving['moving_index'] = np.argsort(np.argsort(moving['id']))
     moving['x'], moving['y'] = np.array([c.position for _, c in circles]).T
     moving['vx'], moving['vy'] = np.array([c.velocity for _, c in circles]).T
     moving['radius'] = [c.radius for _, c in circles]
     moving['mass'] = [c.mass for _, c in circles]
-    moving['kind'] = NOTHING  # planned for at time 0, first thing
+    moving['kind'] = NOTHING  # predicted at time 0, first thing
     moving['time_of_cell'] = NEVER
     return moving
 
 
-def _along_a_curve(points: Array) -> Array:
+def _along_mortons_curve(points: Array) -> Array:
     """Return the order of points along Morton's curve, on which most neighbours are near each other."""
     low, high = points.min(axis=0), points.max(axis=0)
     extent = (high - low).max()
@@ -137,19 +140,19 @@ def _along_a_curve(points: Array) -> Array:
     return np.argsort(key, kind='stable')
 
 
-def _posts(scene: Scene, walls: Walls) -> Array:
-    posts = [
+def _disks(scene: Scene, walls: Walls) -> Array:
+    disks = [
         (*circle.position, circle.radius, LOCKED, index, 0.0, 0.0, 0.0, 0.0)
         for index, circle in enumerate(scene.circles)
         if circle.locked
     ]
-    posts += [
+    disks += [
         (*end, 0.0, WALL_END, number, *beyond)
         for end, number, beyond in zip(
             walls.ends.tolist(), walls.end_numbers.tolist(), walls.beyond.tolist(), strict=True
         )
     ]
-    return np.array(posts, POST)
+    return np.array(disks, DISK)
 
 
 def _typical_speed(moving: Array) -> float:
@@ -166,11 +169,11 @@ def _power_of_two(value: float) -> float:
     return math.ldexp(0.5, math.frexp(value)[1])
 
 
-# ------------------------------------------------------------------ the tournament
+# ------------------------------------------------------------------ the event queue
 
 
-def _tournament(count: int, leaf: int) -> tuple[Array, Array]:
-    """Return the tree in which everybody has time 0."""
+def _event_queue(count: int, leaf: int) -> tuple[Array, Array]:
+    """Return the tree in which all circles have time 0."""
     times = aligned_zeros(2 * leaf, np.dtype(np.float64))
     times[:] = NEVER
     times[leaf : leaf + count] = 0.0

@@ -16,8 +16,8 @@ from types import FunctionType
 from typing import Any
 
 from circle_bounce_ros.kernel.engine import code_cache
-from circle_bounce_ros.kernel.engine.ahead import fetch
 from circle_bounce_ros.kernel.engine.code_cache import CodeCache
+from circle_bounce_ros.kernel.engine.prefetch import fetch
 from circle_bounce_ros.kernel.engine.records import CACHE_LINE
 
 PACKAGE = 'circle_bounce_ros.kernel'

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from circle_bounce_ros.kernel.engine.ahead import look_ahead
-from circle_bounce_ros.kernel.engine.bounce import bounce_off, collide
-from circle_bounce_ros.kernel.engine.grid import cross
+from circle_bounce_ros.kernel.engine.broad_phase import cross
+from circle_bounce_ros.kernel.engine.collision_response import bounce_off, collide
 from circle_bounce_ros.kernel.engine.motion import move_to
-from circle_bounce_ros.kernel.engine.plan import plan, plan_later
+from circle_bounce_ros.kernel.engine.prediction import predict, predict_later
+from circle_bounce_ros.kernel.engine.prefetch import prefetch_next
 from circle_bounce_ros.kernel.engine.records import CIRCLE, EVERYWHERE, NOTHING, Record, World
 
 # Why `run` came back.
@@ -44,7 +44,7 @@ def run(world: World, time: float, at_most: int) -> int:
                 set_clock_back(world, now)
                 until = time - state.epoch
                 continue
-            if state.keep_log and state.notes == len(world.log):
+            if state.keep_log and state.logged == len(world.log):
                 return LOG_FULL
             if is_endless(world, 0, now):
                 return ENDLESS
@@ -57,17 +57,17 @@ def run(world: World, time: float, at_most: int) -> int:
         state.time = now
         state.events += 1
         winner = i
-        while i >= 0:  # plans for the circle and for the one it has hit
-            plan(world, i, now, side)
+        while i >= 0:  # for the circle and for the one it has hit
+            predict(world, i, now, side)
             i = partner
             partner = -1
-        if world.looks_ahead:
-            look_ahead(world, winner)
+        if world.prefetches:
+            prefetch_next(world, winner)
     return DONE
 
 
 def is_contact(world: World, circle: Record) -> bool:
-    """Return whether the plan still holds: a partner that has changed course makes it void."""
+    """Return whether the event is a contact that is still valid: a partner that has changed course makes it void."""
     holds: bool = circle.kind != NOTHING
     if circle.kind == CIRCLE:
         holds = world.moving[circle.partner].changes == circle.partner_changes
@@ -75,13 +75,13 @@ def is_contact(world: World, circle: Record) -> bool:
 
 
 def is_endless(world: World, number: int, now: float) -> bool:
-    """Count the contacts of a crowd that come close upon each other."""
-    crowd = world.crowds[number]
-    if now > crowd.ends:
-        crowd.ends = now + world.crowd_span
-        crowd.count = 0
-    crowd.count += 1
-    endless: bool = crowd.count > world.patience
+    """Count the contacts of a cascade: those that come close upon each other."""
+    cascade = world.cascades[number]
+    if now > cascade.ends:
+        cascade.ends = now + world.cascade_span
+        cascade.count = 0
+    cascade.count += 1
+    endless: bool = cascade.count > world.burst_limit
     return endless
 
 
@@ -103,7 +103,7 @@ def set_clock_back(world: World, now: float) -> None:
     Set all clocks back by whole spans, so that digits do not wear out in long runs.
 
     It is done when a contact is due beyond the span: at instants that the scene fixes, wherever the
-    caller stops. All circles move to the new zero and plan afresh. The span is a power of two, so
+    caller stops. All circles move to the new zero and predict afresh. The span is a power of two, so
     the epoch stays exact.
     """
     state = world.state[0]
@@ -112,10 +112,10 @@ def set_clock_back(world: World, now: float) -> None:
     state.time = max(state.time - back, 0.0)
     state.late = 0.0
     state.just_set = 1
-    for number in range(len(world.crowds)):
-        world.crowds[number].ends -= back
+    for number in range(len(world.cascades)):
+        world.cascades[number].ends -= back
     # A cell that was entered between the new zero and now stays: nothing changes course in between.
     for i in range(len(world.moving)):
         move_to(world.moving[i], back)
         world.moving[i].time = 0.0
-        plan_later(world, i, state.time)
+        predict_later(world, i, state.time)

@@ -27,5 +27,5 @@ def read_positions(moving: Any, state: Any, time: float, rows: Any) -> None:
     for circle in moving:
         # As `place_at`, whose call would be a tenth of what a frame of one ball costs.
         past = until - circle.time
-        rows[circle.rank, 0] = circle.x + circle.vx * past
-        rows[circle.rank, 1] = circle.y + circle.vy * past
+        rows[circle.moving_index, 0] = circle.x + circle.vx * past
+        rows[circle.moving_index, 1] = circle.y + circle.vy * past

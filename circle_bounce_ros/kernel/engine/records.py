@@ -21,87 +21,89 @@ CIRCLE, LOCKED, WALL, WALL_END, NOTHING = *map(int, ContactKind), len(ContactKin
 LEFT, RIGHT, DOWN, UP, EVERYWHERE = 0, 1, 2, 3, 4
 
 
-# A moving circle between two of its own events, with its plan for the next one. It is at `x + vx (t - time)` at
-# time t. `changes` counts its changes of course: a plan that names it as a partner is stale once the count has
+# A moving circle between two of its own events, with its predicted events. It is at `x + vx (t - time)` at
+# time t. `changes` counts its changes of course: an event that names it as a partner is void once the count has
 # gone on. What others look at comes first: one line of the processor's cache.
 MOVING = np.dtype(
     [(name, 'f8') for name in ('x', 'y', 'vx', 'vy', 'time', 'radius', 'mass')]
-    + [('changes', 'i4'), ('level', 'i4')]  # its level of the grid; one beyond the last: away
-    + [('time_of_hit', 'f8'), ('time_of_cell', 'f8')]  # the plan: the next touch, the next cell
+    + [('changes', 'i4'), ('level', 'i4')]  # its level of the grid; one beyond the last: outside
+    + [('time_of_hit', 'f8'), ('time_of_cell', 'f8')]  # predicted: the next touch, the next cell
     + [(name, 'i4') for name in ('kind', 'partner', 'partner_changes', 'side')]
     + [(name, 'i8') for name in ('column', 'row', 'cell')]
-    + [('id', 'i4'), ('rank', 'i4')],  # its number in the scene, and among those that move
+    + [('id', 'i4'), ('moving_index', 'i4')],  # its number in the scene, and among those that move
     align=True,
 )
 
 # A locked circle, or the end of a wall as a circle of radius 0. The id is that of the circle or the wall. An end is
 # touched only beyond the walls that end there, where these point to: (ax, ay) and (bx, by) are the outermost of their
 # directions, 0 for a locked circle.
-POST = np.dtype(
+DISK = np.dtype(
     [(name, 'f8') for name in ('x', 'y', 'radius')]
     + [('kind', 'i8'), ('id', 'i8')]
     + [(name, 'f8') for name in ('ax', 'ay', 'bx', 'by')]
 )
 
-# The flat of a wall, or of several in line: where it starts, its unit normal (direction turned left), its length. One
-# of several has a range of `world.parts`; the id is that of the wall, or the lowest.
-FLAT = np.dtype(
+# A wall segment, of one wall or of several in line: where it starts, its unit normal (direction turned left), its
+# length. One of several has a range of `world.parts`; the id is that of the wall, or the lowest.
+SEGMENT = np.dtype(
     [(name, 'f8') for name in ('x', 'y', 'nx', 'ny', 'length')]
     + [(name, 'i8') for name in ('id', 'first_part', 'end_part')]
 )
 
-# Up to where along its flat a wall is the one that is touched; the first such part counts.
+# Up to where along its segment a wall is the one that is touched; the first such part counts.
 PART = np.dtype([('end', 'f8'), ('id', 'i8')])
 
-# What is locked in reach of a cell: ranges of `world.post_numbers` and `world.flat_numbers`.
-REACH = np.dtype([(name, 'i4') for name in ('first_post', 'end_post', 'first_flat', 'end_flat')])
+# What is locked in reach of a cell: ranges of `world.disk_numbers` and `world.segment_numbers`.
+REACH = np.dtype(
+    [(name, 'i4') for name in ('first_disk', 'end_disk', 'first_segment', 'end_segment')]
+)
 
 # The list of a cell: how many circles are in it, the number of its reach, then the circles.
 COUNT_AT, REACH_AT, CIRCLES_AT = 0, 1, 2
 
-# One level of the grid, or the guests on it: see `grid`.
+# One level of the grid, or the proxies on it: see `broad_phase`.
 TABLE = np.dtype(
     [('width', 'f8')]  # of a cell, m
     + [('fits', 'f8')]  # the radius of the largest resident, m
     + [('shift', 'i8')]  # its cells are 2^shift cells of the finest level wide
     + [('bits', 'i8'), ('mask', 'i8')]  # of the number of a list
     + [('first', 'i8'), ('stride', 'i8')]  # its first list in `world.lists`; from one to the next
-    + [('around', 'i8')]  # where its neighbours begin in `world.around`
-    + [('columns', 'i8'), ('rows', 'i8')]  # of home
+    + [('neighbour_offsets', 'i8')]  # where its neighbours begin in `world.around`
+    + [('columns', 'i8'), ('rows', 'i8')]  # of the grid bounds
 )
 
 # `kernel.CONTACT` with all numbers of 8 bytes, so that each is aligned.
-NOTE = np.dtype(
+LOG_ENTRY = np.dtype(
     [(f.name, 'f8' if issubclass(f.type, np.floating) else 'i8') for f in CONTACT_FIELDS]
 )
 
 # All times in the world count from the epoch: clocks are set back before they grow beyond the span.
 STATE = np.dtype(
-    # late: contacts until then are carried out beyond the span too.
+    # late: contacts until then are resolved beyond the span too.
     [(name, 'f8') for name in ('epoch', 'time', 'late')]
-    + [(name, 'i8') for name in ('events', 'contacts', 'notes', 'away', 'keep_log')]
+    + [(name, 'i8') for name in ('events', 'contacts', 'logged', 'outside', 'keep_log')]
     # just_set: clocks have been set back, and there was no contact since.
-    # in_order: the tournament holds the plans of circles that are followed alone.
+    # in_order: the event queue holds the events of independent circles.
     + [(name, 'i8') for name in ('just_set', 'in_order')]
 )
 
 # Contacts that come close upon each other: how many there have been, and when the counting starts again.
-CROWD = np.dtype([('count', 'i8'), ('ends', 'f8')])
+CASCADE = np.dtype([('count', 'i8'), ('ends', 'f8')])
 
 
-# One record of any of these, in either mode: see `modes`.
+# One record of any of these, in either backend: see `backends`.
 Record = Any
 
 LAYOUTS = {
     'Moving': MOVING,
-    'Post': POST,
-    'Flat': FLAT,
+    'Disk': DISK,
+    'Segment': SEGMENT,
     'Part': PART,
     'Reach': REACH,
     'Table': TABLE,
-    'Note': NOTE,
+    'LogEntry': LOG_ENTRY,
     'State': STATE,
-    'Crowd': CROWD,
+    'Cascade': CASCADE,
 }
 
 CACHE_LINE = 64
@@ -125,33 +127,35 @@ class World(NamedTuple):
     """Everything that the engine works on: arrays of records, arrays of numbers, constants."""
 
     moving: Any
-    posts: Any
-    flats: Any
-    parts: Any  # of flats that are several walls
-    tables: Any  # of each level the residents, then of each level the guests
+    disks: Any
+    segments: Any
+    parts: Any  # of segments that are several walls
+    tables: Any  # of each level the residents, then of each level the proxies
     lists: Any  # of each table, one after the other
     reaches: Any  # the first one is empty
-    near: Any  # scratch: who is in reach
-    around: Any  # of each level, offsets to the cells behind each side and to all, for a reach of 1 and of 2
-    away: Any  # the circles that are in no cell
-    post_numbers: Any
-    flat_numbers: Any
+    candidates: Any  # scratch: the circles in reach
+    neighbour_offsets: (
+        Any  # of each level: to the cells behind each side and to all, for a reach of 1 and of 2
+    )
+    outside: Any  # the circles that are in no cell
+    disk_numbers: Any
+    segment_numbers: Any
     tree_time: Any
     tree_who: Any
     log: Any
     state: Any  # one record: what changes and is no array
-    crowds: Any  # one for all, or one for each circle that is followed alone
-    leaf: int  # the first leaf of the tournament
-    rounds: int  # matches from a leaf to the top
-    looks_ahead: bool  # in compiled code: see `ahead`
+    cascades: Any  # one for all, or one for each independent circle
+    leaf: int  # the first leaf of the event queue
+    rounds: int  # levels of the tree above the leaves
+    prefetches: bool  # in compiled code: see `prefetch`
     levels: int
     x0: float  # where cell (0, 0) of every level begins
     y0: float
-    porch_x0: float
-    porch_y0: float
-    porch_x1: float
-    porch_y1: float
-    edge: float  # how far beyond the porch a circle is away
+    outer_x0: float
+    outer_y0: float
+    outer_x1: float
+    outer_y1: float
+    edge: float  # how far beyond the outer bounds a circle is outside
     span: float
-    crowd_span: float
-    patience: int
+    cascade_span: float
+    burst_limit: int

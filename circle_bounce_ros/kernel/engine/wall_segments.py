@@ -1,9 +1,9 @@
 """
-From the walls of a scene to straight lines: walls in line that touch each other are one flat.
+From the walls of a scene to straight lines: walls in line that touch each other are one segment.
 
 A circle that slides along a floor of many walls only grazes the ends where they meet, and rounding would turn such a
-graze into a contact. So walls in line become one flat, and an end that lies inside of a flat, which is never touched
-before the flat is, becomes no post. Contacts still tell the wall of the scene.
+graze into a contact. So walls in line become one segment, and an end that lies inside of a segment, which
+is never touched before the segment is, becomes no static disk. Contacts still tell the wall of the scene.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine.records import FLAT, PART
+from circle_bounce_ros.kernel.engine.records import PART, SEGMENT
 from circle_bounce_ros.kernel.impact import wall_frame
 from circle_bounce_ros.kernel.scene import Wall
 
@@ -37,11 +37,11 @@ BLOCK = 1 << 20
 class Walls(NamedTuple):
     """What the engine makes of the walls of a scene."""
 
-    flats: Array  # (f,) of dtype FLAT
+    segments: Array  # (s,) of dtype SEGMENT
     parts: Array  # (p,) of dtype PART
     ends: Array  # (e, 2), m: the ends that can be touched
     end_numbers: Array  # (e,): of the walls that share an end the lowest
-    beyond: Array  # (e, 4): two directions of walls that end there, see POST
+    beyond: Array  # (e, 4): two directions of walls that end there, see DISK
 
 
 class _Lines(NamedTuple):
@@ -52,14 +52,14 @@ class _Lines(NamedTuple):
 
 
 def straighten(walls: tuple[Wall, ...]) -> Walls:
-    """Return the flats of walls, one for all walls in line that touch each other, and the ends that can be touched."""
+    """Return the segments of walls, one for walls in line that touch, and the ends that can be touched."""
     first_of: dict[tuple[float, float], int] = {}
     for number, wall in enumerate(walls):
         first_of.setdefault(wall.start, number)
         first_of.setdefault(wall.end, number)
     if not walls:
         none = (np.zeros((0, 2)), np.zeros(0, np.int64), np.zeros((0, 4)))
-        return Walls(np.zeros(0, FLAT), np.zeros(0, PART), *none)
+        return Walls(np.zeros(0, SEGMENT), np.zeros(0, PART), *none)
     row_of = {point: row for row, point in enumerate(first_of)}
     points = np.array(list(first_of))
     ends = np.array([(row_of[wall.start], row_of[wall.end]) for wall in walls])
@@ -69,7 +69,7 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
     )
     rounding = np.finfo(float).eps * np.abs(points[ends]).max(axis=(1, 2))
     on = _points_on_walls(points, ends, lines, ROUNDINGS * rounding)
-    flats: list[tuple[Any, ...]] = []
+    segments: list[tuple[Any, ...]] = []
     parts: list[tuple[float, int]] = []
     ending: list[list[tuple[float, float]]] = [[] for _ in points]
     for group in _groups(
@@ -81,7 +81,7 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
                 parts += _make_one(points, ends, lines, line)
             lowest = line[0]
             frame = lines.frame[lowest]
-            flats.append((*lines.start[lowest], *frame, lowest, begin, len(parts)))
+            segments.append((*lines.start[lowest], *frame, lowest, begin, len(parts)))
             first, last = _extremes(points, ends, line) if len(line) > 1 else ends[lowest]
             nx, ny, _ = frame.tolist()
             ending[first].append((-ny, nx))
@@ -91,9 +91,9 @@ def straighten(walls: tuple[Wall, ...]) -> Walls:
     close = ROUNDINGS * rounding[on_wall]
     hidden = point[(along > close) & (along < lines.frame[on_wall, 2] - close)]
     seen = np.setdiff1d(np.arange(len(points)), hidden)
-    flats.sort(key=lambda flat: flat[5])
+    segments.sort(key=lambda segment: segment[5])
     return Walls(
-        np.array(flats, FLAT),
+        np.array(segments, SEGMENT),
         np.array(parts, PART),
         points[seen],
         np.array(list(first_of.values()))[seen],
@@ -140,8 +140,12 @@ def _points_on_walls(
             wall = walls[number]
             point = orders[axis][firsts[axis][wall] + step]
             along, across = _place(points[point], lines, wall)
-            near = close[wall]
-            on = (across <= near) & (along >= -near) & (along <= lines.frame[wall, 2] + near)
+            candidates = close[wall]
+            on = (
+                (across <= candidates)
+                & (along >= -candidates)
+                & (along <= lines.frame[wall, 2] + candidates)
+            )
             found.append((wall[on], point[on]))
     wall, point = (np.concatenate(part) for part in zip(*found, strict=True))
     return wall, point

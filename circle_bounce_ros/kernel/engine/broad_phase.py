@@ -1,19 +1,19 @@
 """
-Who is near: square cells, on a level for every class of size.
+The broad phase: cell lists in a hierarchical grid, a level for every class of size.
 
-The plane is cut into cells without end, once for every level; a cell of a coarser level is 2^shift cells of the
-finest wide, so that its borders are borders of all finer levels too. A circle is a resident on the level whose
-cells it fits in, `(column, row)` is its cell there, and a guest on every coarser level. Two circles of different
-levels can touch only when their cells on the coarser one are the same or neighbours; two residents of the finest
-level likewise. Residents of a coarser level are large for their cells and may touch across one cell in between.
+The plane is cut into square cells without end, once for every level; a cell of a coarser level is 2^shift cells of
+the finest wide, so that its borders are borders of all finer levels too. A circle is a resident of the level whose
+cells it fits in, where `(column, row)` is its cell, and is entered as a proxy on every coarser level. Two circles of
+different levels can touch only when their cells on the coarser one are the same or neighbours; two residents of the
+finest level likewise. Residents of a coarser level are large for their cells and may touch across one cell in between.
 
-Each cell has a list. A cell's number is cut to its low bits, so that far-away cells share a list: that costs a
-look at circles which are not near and changes no result. Lists have room for so many; when one is full the caller
+Each cell has a list. The number of a cell is hashed by its low bits, so that distant cells share a list: that costs a
+look at circles which are not near and changes no result. Lists have limited room; when one is full the caller
 is told before anything has changed.
 
-A circle that has gone beyond the porch around everything locked is away (`level == levels`): it is in no list and
-pays for none. Its path is straight and the porch convex, so it comes back at a known time or never. Who is inside
-home cannot touch who is away; who is on the porch, or away, looks at all that are.
+A circle beyond the outer bounds, a margin around the grid, is outside (`level == levels`): it is in no list. Its path
+is straight and the outer bounds are convex, so it comes back at a known time or never. A circle within the grid bounds
+cannot touch one that is outside; one in the margin, or outside, has all that are outside for candidates.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def list_at(table: Record, cell: int) -> int:
     return at
 
 
-def put(world: World, table: Record, cell: int, i: int) -> None:
+def append_to_list(world: World, table: Record, cell: int, i: int) -> None:
     """Append circle i to a list that has room."""
     at = list_at(table, cell)
     count = world.lists[at + COUNT_AT]
@@ -65,7 +65,7 @@ def put(world: World, table: Record, cell: int, i: int) -> None:
     world.lists[at + COUNT_AT] = count + 1
 
 
-def take(world: World, table: Record, cell: int, i: int) -> None:
+def remove_from_list(world: World, table: Record, cell: int, i: int) -> None:
     """Take circle i out of a list; the last one takes its place."""
     lists = world.lists
     at = list_at(table, cell)
@@ -93,7 +93,7 @@ def reach_of(world: World, table: Record, cell: int) -> Record:
 # ------------------------------------------------------------------ from cell to cell
 
 
-def settle(world: World, i: int, x: float, y: float) -> bool:
+def insert(world: World, i: int, x: float, y: float) -> bool:
     """Enter circle i, which is in no list, in those of its place; False, and nothing changed, if one is full."""
     circle = world.moving[i]
     level = 0
@@ -105,44 +105,46 @@ def settle(world: World, i: int, x: float, y: float) -> bool:
     cell = list_number(own, column, row)
     room = has_room(world, own, cell)
     for coarser in range(level + 1, world.levels):
-        guests = world.tables[world.levels + coarser]
-        up = guests.shift - own.shift
-        room = room and has_room(world, guests, list_number(guests, column >> up, row >> up))
+        proxies = world.tables[world.levels + coarser]
+        up = proxies.shift - own.shift
+        room = room and has_room(world, proxies, list_number(proxies, column >> up, row >> up))
     if not room:
         return False
     circle.level = level
     circle.column = column
     circle.row = row
     circle.cell = cell
-    put(world, own, cell, i)
+    append_to_list(world, own, cell, i)
     for coarser in range(level + 1, world.levels):
-        guests = world.tables[world.levels + coarser]
-        up = guests.shift - own.shift
-        put(world, guests, list_number(guests, column >> up, row >> up), i)
+        proxies = world.tables[world.levels + coarser]
+        up = proxies.shift - own.shift
+        append_to_list(world, proxies, list_number(proxies, column >> up, row >> up), i)
     return True
 
 
-def leave(world: World, i: int) -> None:
+def remove(world: World, i: int) -> None:
     """Take circle i out of all its lists."""
     circle = world.moving[i]
     own = world.tables[circle.level]
-    take(world, own, circle.cell, i)
+    remove_from_list(world, own, circle.cell, i)
     for coarser in range(circle.level + 1, world.levels):
-        guests = world.tables[world.levels + coarser]
-        up = guests.shift - own.shift
-        take(world, guests, list_number(guests, circle.column >> up, circle.row >> up), i)
+        proxies = world.tables[world.levels + coarser]
+        up = proxies.shift - own.shift
+        remove_from_list(
+            world, proxies, list_number(proxies, circle.column >> up, circle.row >> up), i
+        )
 
 
 def cross(world: World, i: int, now: float) -> bool:
-    """Carry out the change of cell that circle i has planned; False, and nothing changed, if a list is full."""
+    """Carry out the change of cell that is predicted for circle i; False, and nothing changed, if a list is full."""
     circle = world.moving[i]
     x, y = place_at(circle, now)
     if circle.level == world.levels:
-        if not settle(world, i, x, y):
+        if not insert(world, i, x, y):
             return False
-        come_back(world, i)
-    elif is_beyond(world, x, y):
-        go_away(world, i)
+        return_to_grid(world, i)
+    elif is_beyond_outer_bounds(world, x, y):
+        leave_grid(world, i)
     else:
         return step_over(world, i)
     circle.side = EVERYWHERE
@@ -162,63 +164,65 @@ def step_over(world: World, i: int) -> bool:
     cell = list_number(own, column, row)
     room = has_room(world, own, cell)
     for coarser in range(circle.level + 1, world.levels):
-        guests = world.tables[world.levels + coarser]
-        up = guests.shift - own.shift
+        proxies = world.tables[world.levels + coarser]
+        up = proxies.shift - own.shift
         if column >> up != circle.column >> up or row >> up != circle.row >> up:
-            room = room and has_room(world, guests, list_number(guests, column >> up, row >> up))
+            room = room and has_room(world, proxies, list_number(proxies, column >> up, row >> up))
     if not room:
         return False
     for coarser in range(circle.level + 1, world.levels):
-        guests = world.tables[world.levels + coarser]
-        up = guests.shift - own.shift
+        proxies = world.tables[world.levels + coarser]
+        up = proxies.shift - own.shift
         if column >> up != circle.column >> up or row >> up != circle.row >> up:
-            take(world, guests, list_number(guests, circle.column >> up, circle.row >> up), i)
-            put(world, guests, list_number(guests, column >> up, row >> up), i)
-    take(world, own, circle.cell, i)
-    put(world, own, cell, i)
+            remove_from_list(
+                world, proxies, list_number(proxies, circle.column >> up, circle.row >> up), i
+            )
+            append_to_list(world, proxies, list_number(proxies, column >> up, row >> up), i)
+    remove_from_list(world, own, circle.cell, i)
+    append_to_list(world, own, cell, i)
     circle.cell = cell
     circle.column = column
     circle.row = row
     return True
 
 
-# ------------------------------------------------------------------ away
+# ------------------------------------------------------------------ outside the grid
 
 
-def is_beyond(world: World, x: float, y: float) -> bool:
-    """Return whether a place is away: further than the porch by the edge, so that nobody comes and goes at once."""
+def is_beyond_outer_bounds(world: World, x: float, y: float) -> bool:
+    """Return whether a place is beyond the outer bounds by the edge: no circle is to leave and return at once."""
     edge = world.edge
     return (
-        x < world.porch_x0 - edge
-        or x > world.porch_x1 + edge
-        or y < world.porch_y0 - edge
-        or y > world.porch_y1 + edge
+        x < world.outer_x0 - edge
+        or x > world.outer_x1 + edge
+        or y < world.outer_y0 - edge
+        or y > world.outer_y1 + edge
     )
 
 
-def go_away(world: World, i: int) -> None:
+def leave_grid(world: World, i: int) -> None:
     """Take circle i out of the grid."""
-    leave(world, i)
+    remove(world, i)
     state = world.state[0]
-    world.away[state.away] = i
-    state.away += 1
+    world.outside[state.outside] = i
+    state.outside += 1
     world.moving[i].level = world.levels
 
 
-def come_back(world: World, i: int) -> None:
-    """Forget that circle i was away."""
+def return_to_grid(world: World, i: int) -> None:
+    """Remove circle i from those that are outside."""
     state = world.state[0]
     k = 0
-    while world.away[k] != i:
+    while world.outside[k] != i:
         k += 1
-    state.away -= 1
-    world.away[k] = world.away[state.away]
+    state.outside -= 1
+    world.outside[k] = world.outside[state.outside]
 
 
-# ------------------------------------------------------------------ who is in reach
+# ------------------------------------------------------------------ candidates
 
 
-def gather(world: World, circle: Record, side: int) -> int:
+def query_neighbours(world: World, circle: Record, side: int) -> int:
     """
     Write the moving circles in reach of one to `world.near`, or those that have come into reach through a side.
 
@@ -229,69 +233,69 @@ def gather(world: World, circle: Record, side: int) -> int:
 
     """
     if circle.level == world.levels:
-        return gather_everyone(world)
+        return query_all(world)
     own = world.tables[circle.level]
     if circle.level == 0:
-        count = gather_around(world, own, circle.cell, side, NEAR, 0)
+        count = query_cells(world, own, circle.cell, side, NEAR, 0)
     else:
-        count = gather_around(world, own, circle.cell, side, FAR, 0)
-        guests = world.tables[world.levels + circle.level]
-        count = gather_around(world, guests, circle.cell, side, NEAR, count)
+        count = query_cells(world, own, circle.cell, side, FAR, 0)
+        proxies = world.tables[world.levels + circle.level]
+        count = query_cells(world, proxies, circle.cell, side, NEAR, count)
     for coarser in range(circle.level + 1, world.levels):
         table = world.tables[coarser]
         up = table.shift - own.shift
         if side == EVERYWHERE or is_border(circle, side, up):
             cell = list_number(table, circle.column >> up, circle.row >> up)
-            count = gather_around(world, table, cell, side, NEAR, count)
-    if world.state[0].away > 0 and is_on_porch(own, circle):
-        count = gather_away(world, count)
+            count = query_cells(world, table, cell, side, NEAR, count)
+    if world.state[0].outside > 0 and is_outside_grid(own, circle):
+        count = append_outside(world, count)
     return count
 
 
-def gather_around(
-    world: World, table: Record, cell: int, side: int, reach: int, count: int
-) -> int:
+def query_cells(world: World, table: Record, cell: int, side: int, reach: int, count: int) -> int:
     """Append the lists of the cells in reach of one, or of the row that came into it through a side."""
-    near = world.near
+    candidates = world.candidates
     lists = world.lists
     first = table.first
     stride = table.stride
     mask = table.mask
     row = 2 * reach + 1
-    begin = table.around + (reach - 1) * CELLS_AROUND_NEAR + row * side
+    begin = table.neighbour_offsets + (reach - 1) * CELLS_AROUND_NEAR + row * side
     end = begin + row
     if side == EVERYWHERE:
         end = begin + row * row
     for k in range(begin, end):
-        at = first + stride * ((cell + world.around[k]) & mask)  # `list_at`, its fields read once
+        at = first + stride * (
+            (cell + world.neighbour_offsets[k]) & mask
+        )  # `list_at`, its fields read once
         members = lists[at + COUNT_AT]
         at += CIRCLES_AT
         # Most lists hold none, one or two: copying two always is quicker than asking.
-        near[count] = lists[at]
-        near[count + 1] = lists[at + 1]
+        candidates[count] = lists[at]
+        candidates[count + 1] = lists[at + 1]
         for m in range(2, members):
-            near[count + m] = lists[at + m]
+            candidates[count + m] = lists[at + m]
         count += members
     return count
 
 
-def gather_everyone(world: World) -> int:
+def query_all(world: World) -> int:
     """Write all moving circles to `world.near`."""
     for k in range(len(world.moving)):
-        world.near[k] = k
+        world.candidates[k] = k
     return len(world.moving)
 
 
-def gather_away(world: World, count: int) -> int:
-    """Append the circles that are away."""
-    away: int = world.state[0].away
-    for k in range(away):
-        world.near[count + k] = world.away[k]
-    return count + away
+def append_outside(world: World, count: int) -> int:
+    """Append the circles that are outside."""
+    outside: int = world.state[0].outside
+    for k in range(outside):
+        world.candidates[count + k] = world.outside[k]
+    return count + outside
 
 
-def is_on_porch(own: Record, circle: Record) -> bool:
-    """Return whether a circle in the grid is outside home."""
+def is_outside_grid(own: Record, circle: Record) -> bool:
+    """Return whether a circle in a cell is outside the grid bounds."""
     inside = 0 <= circle.column < own.columns and 0 <= circle.row < own.rows
     return not inside
 

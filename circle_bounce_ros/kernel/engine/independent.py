@@ -1,17 +1,18 @@
 """
-A circle that moves alone, or circles that pass through each other: each is followed on its own, without a queue.
+Independent circles, one that moves alone or several that pass through each other: each is followed on its own.
 
-Nobody waits for anybody, so each circle goes to the time wanted before the next one is looked at. Of the tournament
-only the top is used: the earliest time at which there is something to do. Where the work has to be cut at a
-time that all circles have reached, the tournament tells whose contact is next.
+No circle depends on another one, so each goes to the time wanted before the next one is looked at. Of the event queue
+only the root is used: the earliest time at which there is something to do. Where the work has to be cut at a
+time that all circles have reached, the queue tells whose contact is next.
 
 The same contacts at the same instants as `loop` would find, to the last digit.
 """
 
 from __future__ import annotations
 
-from circle_bounce_ros.kernel.engine.bounce import bounce_off
-from circle_bounce_ros.kernel.engine.grid import list_number
+from circle_bounce_ros.kernel.engine.broad_phase import list_number
+from circle_bounce_ros.kernel.engine.collision_response import bounce_off
+from circle_bounce_ros.kernel.engine.event_queue import update, update_all
 from circle_bounce_ros.kernel.engine.loop import (
     BUDGET_SPENT,
     DONE,
@@ -21,13 +22,12 @@ from circle_bounce_ros.kernel.engine.loop import (
     is_endless,
     set_clock_back,
 )
-from circle_bounce_ros.kernel.engine.plan import plan_cell, plan_locked
+from circle_bounce_ros.kernel.engine.prediction import predict_crossing, predict_locked
 from circle_bounce_ros.kernel.engine.records import DOWN, NOTHING, Record, World
-from circle_bounce_ros.kernel.engine.tournament import enter, enter_all
 from circle_bounce_ros.kernel.impact import NEVER
 
 
-def run_alone(world: World, time: float) -> int:
+def run_independent(world: World, time: float) -> int:
     """
     Carry out all contacts up to and including a time, circle by circle.
 
@@ -47,24 +47,24 @@ def run_alone(world: World, time: float) -> int:
         earliest = NEVER
         for i in range(len(world.moving)):
             circle = world.moving[i]
-            crowd = world.crowds[i]
-            count = crowd.count
-            ends = crowd.ends
+            cascade = world.cascades[i]
+            count = cascade.count
+            ends = cascade.ends
             while circle.time_of_hit <= until:
                 now = circle.time_of_hit
                 if now >= world.span and now > state.late:
                     break
                 if circle.kind != NOTHING:
-                    if state.keep_log and state.notes == len(world.log):
-                        crowd.count = count
-                        crowd.ends = ends
+                    if state.keep_log and state.logged == len(world.log):
+                        cascade.count = count
+                        cascade.ends = ends
                         return LOG_FULL
                     # As `is_endless`, in numbers of this function: a tenth faster.
                     if now > ends:
-                        ends = now + world.crowd_span
+                        ends = now + world.cascade_span
                         count = 0
                     count += 1
-                    if count > world.patience:
+                    if count > world.burst_limit:
                         return ENDLESS
                     state.just_set = 0
                     bounce_off(world, i, now)
@@ -78,7 +78,7 @@ def run_alone(world: World, time: float) -> int:
             until = time - state.epoch
 
 
-def run_alone_in_order(world: World, time: float, at_most: int) -> int:
+def run_independent_in_order(world: World, time: float, at_most: int) -> int:
     """
     Carry out all contacts up to and including a time in the order of time, but about `at_most` steps of work.
 
@@ -92,7 +92,7 @@ def run_alone_in_order(world: World, time: float, at_most: int) -> int:
     last = state.events + at_most
     until = time - state.epoch
     if state.in_order == 0 and world.tree_time[1] <= until:
-        enter_all(world)
+        update_all(world)
         state.in_order = 1
     while world.tree_time[1] <= until:
         if state.events >= last:
@@ -105,7 +105,7 @@ def run_alone_in_order(world: World, time: float, at_most: int) -> int:
             continue
         circle = world.moving[i]
         if circle.kind != NOTHING:
-            if state.keep_log and state.notes == len(world.log):
+            if state.keep_log and state.logged == len(world.log):
                 return LOG_FULL
             if is_endless(world, i, now):
                 return ENDLESS
@@ -113,27 +113,27 @@ def run_alone_in_order(world: World, time: float, at_most: int) -> int:
             bounce_off(world, i, now)
         state.time = now
         follow(world, circle, now)
-        enter(world, i, circle.time_of_hit)
+        update(world, i, circle.time_of_hit)
     return DONE
 
 
 def follow(world: World, circle: Record, now: float) -> None:
-    """Make the plan of a circle: follow it from cell to cell until something locked is found."""
+    """Predict the next contact of a circle: follow it from cell to cell until something locked is found."""
     circle.time_of_hit = NEVER
     circle.kind = NOTHING
     table = world.tables[circle.level]
     steps = 0
     while True:
         steps += 1
-        plan_locked(world, circle)
-        plan_cell(world, circle, now)
+        predict_locked(world, circle)
+        predict_crossing(world, circle, now)
         if circle.time_of_hit <= circle.time_of_cell:
             break
         if circle.side < DOWN:
             circle.column += 2 * circle.side - 1
         else:
             circle.row += 2 * circle.side - 5
-        # Nothing locked lies outside of home.
+        # Nothing locked lies outside of the grid bounds.
         if not (0 <= circle.column < table.columns and 0 <= circle.row < table.rows):
             break
         circle.cell = list_number(table, circle.column, circle.row)

@@ -17,39 +17,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 from circle_bounce_ros.kernel.engine import compilation, records
-from circle_bounce_ros.kernel.engine.alone import run_alone, run_alone_in_order
 from circle_bounce_ros.kernel.engine.build import build
 from circle_bounce_ros.kernel.engine.code_cache import CodeCache
+from circle_bounce_ros.kernel.engine.independent import run_independent, run_independent_in_order
 from circle_bounce_ros.kernel.engine.loop import run
 from circle_bounce_ros.kernel.engine.motion import read_positions
 from circle_bounce_ros.kernel.engine.records import World
 from circle_bounce_ros.kernel.scene import Circle, Scene
 
 # For so few moving circles plain code is the faster one.
-FEW = 4
+PLAIN_UP_TO = 4
 
 
 # It carries out the events of a world up to a time, but so many at most.
 Entry = Callable[[World, float, int], int]
 
 
-class Mode(NamedTuple):
+class Backend(NamedTuple):
     """The engine's entries, and whether they take a world of arrays or one of objects."""
 
     run: Entry
-    run_alone: Callable[[World, float], int]
-    run_alone_in_order: Entry
+    run_independent: Callable[[World, float], int]
+    run_independent_in_order: Entry
     read_positions: Callable[[Any, Any, float, NDArray[np.float64]], None]
     takes_arrays: bool
 
 
-PLAIN = Mode(run, run_alone, run_alone_in_order, read_positions, takes_arrays=False)
+PLAIN = Backend(run, run_independent, run_independent_in_order, read_positions, takes_arrays=False)
 
 
 @lru_cache(maxsize=1)
-def compiled() -> Mode:
+def compiled() -> Backend:
     """
-    Return the compiled mode: read from disk, or compiled now and kept there.
+    Return the compiled backend: read from disk, or compiled now and kept there.
 
     Raises
     ------
@@ -59,25 +59,25 @@ def compiled() -> Mode:
     """
     code = CodeCache()
     together, alone, in_order, read = compilation.compile_entries(
-        code, run, run_alone, run_alone_in_order, read_positions
+        code, run, run_independent, run_independent_in_order, read_positions
     )
-    mode = Mode(together, alone, in_order, read, takes_arrays=True)
+    backend = Backend(together, alone, in_order, read, takes_arrays=True)
     for collide in (True, False):
         two = [Circle((x, 0.0), (1.0, 0.0), radius=0.1) for x in (0.0, 1.0)]
         world = build(Scene(two, moving_circles_collide=collide), keep_log=False)
         if collide:
-            mode.run(world, 1.0, 100)
+            backend.run(world, 1.0, 100)
         else:
-            mode.run_alone(world, 1.0)
-            mode.run_alone_in_order(world, 2.0, 100)
-        mode.read_positions(world.moving, world.state, 1.0, np.empty((2, 2)))
+            backend.run_independent(world, 1.0)
+            backend.run_independent_in_order(world, 2.0, 100)
+        backend.read_positions(world.moving, world.state, 1.0, np.empty((2, 2)))
     code.save()
-    return mode
+    return backend
 
 
 @lru_cache(maxsize=1)
-def fastest() -> Mode:
-    """Return the compiled mode, or the plain one with a warning where numba is missing parts or fails."""
+def fastest() -> Backend:
+    """Return the compiled backend, or the plain one with a warning where numba is missing parts or fails."""
     try:
         return compiled()
     except Exception as error:  # numba and LLVM have no common kind
@@ -98,10 +98,10 @@ def compile_ahead() -> bool:
     return compilation.is_available() and fastest() is not PLAIN
 
 
-def choose(count: int, wanted: bool | None) -> Mode:
-    """Return the mode for so many moving circles; `wanted` None: the faster one that there is."""
+def choose(count: int, wanted: bool | None) -> Backend:
+    """Return the backend for so many moving circles; `wanted` None: the faster one that there is."""
     if wanted is None:
-        return fastest() if count > FEW and compilation.is_available() else PLAIN
+        return fastest() if count > PLAIN_UP_TO and compilation.is_available() else PLAIN
     return compiled() if wanted else PLAIN
 
 
@@ -110,7 +110,7 @@ def choose(count: int, wanted: bool | None) -> Mode:
 
 def to_objects(world: World) -> World:
     """Return a world of arrays as one of objects and lists."""
-    world = world._replace(looks_ahead=False)
+    world = world._replace(prefetches=False)
     parts = (_to_list(part) if isinstance(part, np.ndarray) else part for part in world)
     return cast(World, _PlainWorld(*parts))
 

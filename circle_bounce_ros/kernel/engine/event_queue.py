@@ -1,9 +1,9 @@
 """
-Whose plan is the earliest: a tournament among all moving circles.
+The event queue: a winner tree over the next events of all moving circles.
 
-A binary tree in two lists. Leaf `world.leaf + i` is circle i with the time of its plan; each inner node holds
-the smaller of its two children's times and whose it is; node 1 is the winner. Of equal
-times that of the later match goes first: always the same in the same run.
+A binary tree in two lists. Leaf `world.leaf + i` is circle i with the time of its next event; each inner node holds
+the smaller of its two children's times and whose it is; node 1 is the next event of all. Of equal times the one that
+was entered later goes first: always the same in the same run.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from __future__ import annotations
 from circle_bounce_ros.kernel.engine.records import World
 
 
-def enter_all(world: World) -> None:
-    """Give all circles the times of their contacts, and play all matches."""
+def update_all(world: World) -> None:
+    """Enter the next contact of every circle."""
     times = world.tree_time
     who = world.tree_who
     for i in range(len(world.moving)):
@@ -26,15 +26,15 @@ def enter_all(world: World) -> None:
         who[node] = who[winner]
 
 
-def enter(world: World, i: int, time: float) -> None:
-    """Give circle i a time and play its matches again, up to the root."""
+def update(world: World, i: int, time: float) -> None:
+    """Enter the time of the next event of circle i."""
     times = world.tree_time
     who = world.tree_who
     node = world.leaf + i
     times[node] = time
     while node > 1:
         rival = times[node ^ 1]
-        # The winner's number is read after the match, not in it: that compiles to a conditional move.
+        # The winner's number is read after the comparison: that compiles to a conditional move.
         winner = node
         if rival < time:
             time = rival

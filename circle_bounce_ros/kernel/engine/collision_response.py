@@ -1,4 +1,4 @@
-"""A contact, carried out: both bodies at its instant, their new velocities, a line in the log."""
+"""The collision response: both bodies at the instant of their contact, their new velocities, a line in the log."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from circle_bounce_ros.kernel.reflection import exchange_xy, push_xy, reflect_xy
 
 
 def collide(world: World, i: int, j: int, time: float) -> None:
-    """Carry out the contact of two moving circles."""
+    """Resolve the contact of two moving circles."""
     a = world.moving[i]
     b = world.moving[j]
-    if a.id > b.id:  # Whichever of the two has the plan: the same order, so the same digits.
+    if a.id > b.id:  # Whichever of the two has the event: the same order, so the same digits.
         a = world.moving[j]
         b = world.moving[i]
     move_to(a, time)
@@ -28,43 +28,43 @@ def collide(world: World, i: int, j: int, time: float) -> None:
         before = a.vx, a.vy, b.vx, b.vy
         a.vx, a.vy, b.vx, b.vy = exchange_xy(a.vx, a.vy, b.vx, b.vy, a.mass, b.mass, nx, ny)
         after = a.vx, a.vy, b.vx, b.vy
-        note(world, a, b.id, CIRCLE, nx, ny, a.mass * b.mass * push, before, after)
+        log_contact(world, a, b.id, CIRCLE, nx, ny, a.mass * b.mass * push, before, after)
 
 
 def bounce_off(world: World, i: int, time: float) -> None:
-    """Carry out the contact with something locked that circle i has planned."""
+    """Resolve the contact with something locked that is predicted for circle i."""
     circle = world.moving[i]
     move_to(circle, time)
     circle.changes += 1
     if circle.kind == WALL:
-        flat = world.flats[circle.partner]
-        other = wall_at(world, flat, circle.x, circle.y)
-        nx = flat.nx
-        ny = flat.ny
+        segment = world.segments[circle.partner]
+        other = wall_at(world, segment, circle.x, circle.y)
+        nx = segment.nx
+        ny = segment.ny
         # From the circle to the wall: the way that the velocity goes.
         if circle.vx * nx + circle.vy * ny < 0.0:
             nx = -nx
             ny = -ny
     else:
-        post = world.posts[circle.partner]
-        other = post.id
-        nx = post.x - circle.x
-        ny = post.y - circle.y
+        disk = world.disks[circle.partner]
+        other = disk.id
+        nx = disk.x - circle.x
+        ny = disk.y - circle.y
     push = push_xy(circle.vx, circle.vy, nx, ny, 1.0)
     if push > 0.0:
         before = circle.vx, circle.vy, 0.0, 0.0
         circle.vx, circle.vy = reflect_xy(circle.vx, circle.vy, nx, ny)
         after = circle.vx, circle.vy, 0.0, 0.0
-        note(world, circle, other, circle.kind, nx, ny, circle.mass * push, before, after)
+        log_contact(world, circle, other, circle.kind, nx, ny, circle.mass * push, before, after)
 
 
-def wall_at(world: World, flat: Record, x: float, y: float) -> int:
-    """Return the number of the wall that a circle at (x, y) touches with a flat."""
-    number: int = flat.id
-    low = flat.first_part
-    high = flat.end_part - 1
+def wall_at(world: World, segment: Record, x: float, y: float) -> int:
+    """Return the number of the wall that a circle at (x, y) touches at a segment."""
+    number: int = segment.id
+    low = segment.first_part
+    high = segment.end_part - 1
     if low <= high:
-        along = (x - flat.x) * flat.ny - (y - flat.y) * flat.nx
+        along = (x - segment.x) * segment.ny - (y - segment.y) * segment.nx
         while low < high:
             middle = (low + high) // 2
             if world.parts[middle].end < along:
@@ -75,7 +75,7 @@ def wall_at(world: World, flat: Record, x: float, y: float) -> int:
     return number
 
 
-def note(
+def log_contact(
     world: World,
     a: Record,
     b: int,
@@ -94,8 +94,8 @@ def note(
     state = world.state[0]
     state.contacts += 1
     if state.keep_log:
-        line = world.log[state.notes]
-        state.notes += 1
+        line = world.log[state.logged]
+        state.logged += 1
         line.time = state.epoch + a.time
         line.a = a.id
         line.b = b

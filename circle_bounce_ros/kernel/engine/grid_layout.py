@@ -1,7 +1,7 @@
 """
-The grid of a scene: levels of cells of the right width, and everybody entered in them.
+The grid of a scene: levels of cells of the right width, and all circles entered in them.
 
-How the engine uses it says `grid`.
+How the engine uses it says `broad_phase`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from circle_bounce_ros.kernel.engine.grid import CELL_MARGIN, FAR, NEAR
+from circle_bounce_ros.kernel.engine.broad_phase import CELL_MARGIN, FAR, NEAR
 from circle_bounce_ros.kernel.engine.records import (
     CIRCLES_AT,
     COUNT_AT,
@@ -34,11 +34,11 @@ GAPS_A_CELL = 1.0
 GAPS_A_CELL_OF_LEVELS = 0.7
 
 # A level is split off for smaller circles where nine of its cells would hold more than this many.
-CROWDED = 32
+SPLIT_ABOVE = 32
 
-# Its cells, in largest radii, are then as narrow as they can be with guests of up to an eighth of their width.
-GUEST = 1.0 / 8.0
-COARSE = 1.0 / (1.0 - GUEST)
+# Its cells, in largest radii, are then as narrow as they can be with proxies of up to an eighth of their width.
+PROXY = 1.0 / 8.0
+COARSE = 1.0 / (1.0 - PROXY)
 
 # No more cells than this along the longer side: memory.
 MOST_CELLS_A_SIDE = 4096
@@ -53,7 +53,7 @@ LEAST_STRIDE = CIRCLES_AT + 4
 
 
 class Grid(NamedTuple):
-    """The cells of a world, from the corner (x0, y0) of home to (x1, y1); the arrays are those of `World`."""
+    """The cells of a world; the grid bounds go from (x0, y0) to (x1, y1), the arrays are those of `World`."""
 
     x0: float
     y0: float
@@ -62,25 +62,25 @@ class Grid(NamedTuple):
     widest: float  # of a cell, m
     tables: Array
     lists: Array
-    around: Array
+    neighbour_offsets: Array
     reaches: Array
-    post_numbers: Array
-    flat_numbers: Array
+    disk_numbers: Array
+    segment_numbers: Array
 
 
-def lay_out(moving: Array, posts: Array, flats: Array, collide: bool) -> Grid:
+def lay_out(moving: Array, disks: Array, segments: Array, collide: bool) -> Grid:
     """Return the grid for what moves and what is locked; who moves is told level and cell."""
-    x0, y0, x1, y1 = _home(moving, posts)
+    x0, y0, x1, y1 = _bounds(moving, disks)
     widths = _widths(moving['radius'], x1 - x0, y1 - y0, collide)
     levels = len(widths)
     for halvings in range(MOST_CELLS_A_SIDE.bit_length()):
-        tables, around = _tables(widths, x1 - x0, y1 - y0, halvings)
+        tables, neighbour_offsets = _tables(widths, x1 - x0, y1 - y0, halvings)
         moving['level'] = np.searchsorted(tables['fits'][:levels], moving['radius'])
         if not collide or _has_room(tables[:levels], moving, x0, y0):
             break
     lists = _enter_moving(tables, moving, x0, y0, collide)
-    locked = _enter_locked(tables[:levels], lists, posts, flats, x0, y0)
-    return Grid(x0, y0, x1, y1, float(widths[-1]), tables, lists, around, *locked)
+    locked = _enter_locked(tables[:levels], lists, disks, segments, x0, y0)
+    return Grid(x0, y0, x1, y1, float(widths[-1]), tables, lists, neighbour_offsets, *locked)
 
 
 def with_more_room(world: World) -> World:
@@ -96,8 +96,8 @@ def with_more_room(world: World) -> World:
         first += block.size
         blocks.append(block.ravel())
     lists = aligned_copy(np.concatenate(blocks))
-    near = scratch(tables, len(world.moving))
-    return world._replace(tables=tables, lists=lists, near=near)
+    candidates = scratch(tables, len(world.moving))
+    return world._replace(tables=tables, lists=lists, candidates=candidates)
 
 
 def _lists_of(lists: Array, table: Array) -> Array:
@@ -107,20 +107,20 @@ def _lists_of(lists: Array, table: Array) -> Array:
 
 
 def scratch(tables: Array, count: int) -> Array:
-    """Return room for all that `grid.gather` may write."""
+    """Return room for all that `broad_phase.query_neighbours` may write."""
     most = (2 * FAR + 1) ** 2
     return np.zeros(most * int(tables['stride'].sum()) + 2 * count + 2, np.int32)
 
 
-def _home(moving: Array, posts: Array) -> tuple[float, float, float, float]:
-    """Return the box beyond which nothing locked can be touched and nobody starts."""
+def _bounds(moving: Array, disks: Array) -> tuple[float, float, float, float]:
+    """Return the box beyond which nothing locked can be touched and no circle starts."""
     widest = 2.0 * float(moving['radius'].max())
     box = []
     for axis in ('x', 'y'):
         low, high = [moving[axis].min()], [moving[axis].max()]
-        if len(posts):
-            low.append((posts[axis] - posts['radius']).min())
-            high.append((posts[axis] + posts['radius']).max())
+        if len(disks):
+            low.append((disks[axis] - disks['radius']).min())
+            high.append((disks[axis] + disks['radius']).max())
         box.append((float(min(low)) - widest, float(max(high)) + widest))
     (x0, x1), (y0, y1) = box
     return x0, y0, x1, y1
@@ -141,7 +141,7 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
         return max(widest, gaps * gap, max(width, height) / MOST_CELLS_A_SIDE)
 
     widths = [least(radii, GAPS_A_CELL)]
-    while collide and 9.0 * widths[-1] ** 2 * len(radii) > CROWDED * area:
+    while collide and 9.0 * widths[-1] ** 2 * len(radii) > SPLIT_ABOVE * area:
         needed = COARSE * float(radii.max()) * (1.0 + CELL_MARGIN) ** 2
         needed = max(needed, max(width, height) / MOST_CELLS_A_SIDE)
         coarse = widths[-1]
@@ -149,7 +149,7 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
             coarse = needed
         elif coarse / 2.0 >= needed:
             coarse /= 2.0
-        radii = radii[radii * (1.0 + CELL_MARGIN) <= GUEST * coarse]
+        radii = radii[radii * (1.0 + CELL_MARGIN) <= PROXY * coarse]
         if len(radii) == 0:
             break
         narrowest = least(radii, GAPS_A_CELL_OF_LEVELS)
@@ -165,17 +165,17 @@ def _widths(radii: Array, width: float, height: float, collide: bool) -> Array:
 
 def _tables(widths: Array, width: float, height: float, halvings: int) -> tuple[Array, Array]:
     """
-    Return the tables of residents and of guests, without members, and each level's cells in reach.
+    Return the tables of residents and of proxies, without members, and each level's cells in reach.
 
     Of as many lists as there are cells, half along each side for each halving.
     """
     levels = len(widths)
     tables = np.zeros(2 * levels, TABLE)
-    around: list[int] = []
+    neighbour_offsets: list[int] = []
     for number, table in enumerate(tables):
         level = number % levels
         columns, rows = (max(1, math.ceil(side / widths[level])) for side in (width, height))
-        # Eight cells a side at least, so that five times five have a list each; the finest level has no guests.
+        # Eight cells a side at least, so that five times five have a list each; the finest level has no proxies.
         bits = [
             max(2 if level == 0 else 3, _bits(cells) - halvings) if number != levels else 0
             for cells in (columns, rows)
@@ -185,16 +185,16 @@ def _tables(widths: Array, width: float, height: float, halvings: int) -> tuple[
         table['bits'], table['mask'] = bits[0], (1 << sum(bits)) - 1
         table['columns'], table['rows'] = columns, rows
         if number < levels:
-            guest = tables['fits'][level - 1] if level > 0 else 0.0
+            proxy = tables['fits'][level - 1] if level > 0 else 0.0
             share = 1.0 if level > 0 else 0.5
-            table['fits'] = share * widths[level] / (1.0 + CELL_MARGIN) - guest
+            table['fits'] = share * widths[level] / (1.0 + CELL_MARGIN) - proxy
             if level + 1 < levels:
-                table['fits'] = min(table['fits'], GUEST * widths[level + 1])
-            table['around'] = len(around)
-            around += [*_offsets(NEAR, 1 << bits[0]), *_offsets(FAR, 1 << bits[0])]
+                table['fits'] = min(table['fits'], PROXY * widths[level + 1])
+            table['neighbour_offsets'] = len(neighbour_offsets)
+            neighbour_offsets += [*_offsets(NEAR, 1 << bits[0]), *_offsets(FAR, 1 << bits[0])]
         else:
-            table['around'] = tables['around'][level]
-    return tables, np.array(around, np.int64)
+            table['neighbour_offsets'] = tables['neighbour_offsets'][level]
+    return tables, np.array(neighbour_offsets, np.int64)
 
 
 def _bits(cells: int) -> int:
@@ -211,7 +211,7 @@ def _offsets(reach: int, row: int) -> list[int]:
 
 
 def _has_room(tables: Array, moving: Array, x0: float, y0: float) -> bool:
-    """Return whether lists as long as the longest, of who is on a level and of its guests, do not take too much."""
+    """Return whether lists as long as the longest, of residents or of proxies, do not take too much."""
     most = max(MOST_ROOM, MOST_ROOM_A_CIRCLE * len(moving))
     for level, table in enumerate(tables):
         there = moving[moving['level'] <= level]
@@ -227,7 +227,7 @@ def _has_room(tables: Array, moving: Array, x0: float, y0: float) -> bool:
 
 
 def _enter_moving(tables: Array, moving: Array, x0: float, y0: float, collide: bool) -> Array:
-    """Enter each circle in its cell, and in the lists of residents and guests; return the lists."""
+    """Enter each circle in its cell, and in the lists of residents and proxies; return the lists."""
     levels = len(tables) // 2
     first = 0
     blocks = []
@@ -264,31 +264,33 @@ def _enter_moving(tables: Array, moving: Array, x0: float, y0: float, collide: b
 
 
 def _enter_locked(
-    tables: Array, lists: Array, posts: Array, flats: Array, x0: float, y0: float
+    tables: Array, lists: Array, disks: Array, segments: Array, x0: float, y0: float
 ) -> tuple[Array, Array, Array]:
-    """Enter each post and flat in every cell from which a circle of that level could touch it."""
+    """Enter each static disk and wall segment in every cell from which a circle of that level could touch it."""
     in_reach: list[tuple[list[int], list[int]]] = [([], [])]
     for table in tables:
         of_cell: dict[int, tuple[list[int], list[int]]] = {}
-        for number, post in enumerate(posts):
-            for cell in _cells_near_post(table, post, x0, y0):
+        for number, disk in enumerate(disks):
+            for cell in _cells_near_disk(table, disk, x0, y0):
                 of_cell.setdefault(cell, ([], []))[0].append(number)
-        for number, flat in enumerate(flats):
-            for cell in _cells_near_flat(table, flat, x0, y0):
+        for number, segment in enumerate(segments):
+            for cell in _cells_near_segment(table, segment, x0, y0):
                 of_cell.setdefault(cell, ([], []))[1].append(number)
         numbers = np.arange(len(in_reach), len(in_reach) + len(of_cell))
         _lists_of(lists, table)[list(of_cell), REACH_AT] = numbers
         in_reach += of_cell.values()
     reaches = np.zeros(len(in_reach), REACH)
-    reaches['first_post'], reaches['end_post'], post_numbers = _ranges([a for a, _ in in_reach])
-    reaches['first_flat'], reaches['end_flat'], flat_numbers = _ranges([b for _, b in in_reach])
-    return reaches, post_numbers, flat_numbers
+    reaches['first_disk'], reaches['end_disk'], disk_numbers = _ranges([a for a, _ in in_reach])
+    reaches['first_segment'], reaches['end_segment'], segment_numbers = _ranges(
+        [b for _, b in in_reach]
+    )
+    return reaches, disk_numbers, segment_numbers
 
 
-def _cells_near_post(table: Array, post: Array, x0: float, y0: float) -> list[int]:
+def _cells_near_disk(table: Array, disk: Array, x0: float, y0: float) -> list[int]:
     half = float(table['width']) / 2.0
-    reach = float(post['radius']) + float(table['fits']) * (1.0 + 1e-6)  # far more than rounding
-    px, py = float(post['x']), float(post['y'])
+    reach = float(disk['radius']) + float(table['fits']) * (1.0 + 1e-6)  # far more than rounding
+    px, py = float(disk['x']), float(disk['y'])
     column, row, x, y = _cells(table, (px, px), (py, py), reach, x0, y0)
     beyond = np.hypot(
         np.maximum(np.abs(x - px) - half, 0.0), np.maximum(np.abs(y - py) - half, 0.0)
@@ -296,15 +298,15 @@ def _cells_near_post(table: Array, post: Array, x0: float, y0: float) -> list[in
     return _list_numbers(table, column[beyond <= reach], row[beyond <= reach])
 
 
-def _cells_near_flat(table: Array, flat: Array, x0: float, y0: float) -> list[int]:
+def _cells_near_segment(table: Array, segment: Array, x0: float, y0: float) -> list[int]:
     half = float(table['width']) / 2.0
     reach = float(table['fits']) * (1.0 + 1e-6)
-    sx, sy, nx, ny, length = (float(flat[name]) for name in ('x', 'y', 'nx', 'ny', 'length'))
+    sx, sy, nx, ny, length = (float(segment[name]) for name in ('x', 'y', 'nx', 'ny', 'length'))
     xs, ys = sorted((sx, sx + length * ny)), sorted((sy, sy - length * nx))
     column, row, x, y = _cells(table, xs, ys, reach, x0, y0)
     # Half the extent of a cell across the wall, and the reach of a circle in it.
-    near = np.abs((x - sx) * nx + (y - sy) * ny) <= half * (abs(nx) + abs(ny)) + reach
-    return _list_numbers(table, column[near], row[near])
+    candidates = np.abs((x - sx) * nx + (y - sy) * ny) <= half * (abs(nx) + abs(ny)) + reach
+    return _list_numbers(table, column[candidates], row[candidates])
 
 
 def _cells(
@@ -331,5 +333,5 @@ def _ranges(lists: list[list[int]]) -> tuple[Array, Array, Array]:
     """Return where each list begins and ends in all of them one after the other."""
     ends = np.cumsum([len(numbers) for numbers in lists])
     begins = np.concatenate([[0], ends[:-1]])
-    flat: Iterator[int] = (number for numbers in lists for number in numbers)
-    return begins, ends, np.fromiter(flat, np.int32)
+    segment: Iterator[int] = (number for numbers in lists for number in numbers)
+    return begins, ends, np.fromiter(segment, np.int32)
