@@ -15,6 +15,7 @@ from circle_bounce_ros.encoding.clouds import DATATYPES
 from circle_bounce_ros.encoding.topics import BODIES, CONTACTS, STATIC_MARKERS, TIME
 from circle_bounce_ros.kernel import Circle, ContactKind, Scene, SceneError, Wall
 from circle_bounce_ros.offline.bag import METADATA
+from circle_bounce_ros.offline.parquet import CIRCLES_FILE
 from circle_bounce_ros.offline.recording import SCENE_FILE
 from circle_bounce_ros.offline.source import Frame, Source, SourceError, thinned
 from circle_bounce_ros.scene_file import load_scene
@@ -98,6 +99,8 @@ def of_bag(folder: Path, duration: float, rate: float, namespace: str | None = N
         For what is no bag of a node, or a broken one.
 
     """
+    if (folder / CIRCLES_FILE).exists():
+        raise SourceError(f'{folder}: must be a bag, got Parquet tables')
     if not (folder / METADATA).exists():
         raise SourceError(
             f'{folder}: has no {METADATA}; if its recording was cut short: '

@@ -36,13 +36,19 @@ class SeldomLog:
             self._say(sentence[:LONGEST])
 
 
+def one_line(text: str) -> str:
+    """Return what may be a stranger's text as one printable line, cut when it is long."""
+    line = ' '.join(text.split())[:LONGEST]
+    return ''.join(c if c.isprintable() else ascii(c)[1:-1] for c in line)[:LONGEST]
+
+
 def http_log(say: Callable[[str], None]) -> logging.Logger:
     """Return a logger for aiohttp: what strangers send wrong becomes a sentence, what goes wrong here is logged."""
 
     def is_ours(record: logging.LogRecord) -> bool:
         error = record.exc_info[1] if record.exc_info else None
         if isinstance(error, HttpProcessingError):
-            say(f'request: cannot be read: {" ".join(error.message.split())}')
+            say(f'request: cannot be read: {one_line(error.message)}')
             return False
         return True
 

@@ -19,7 +19,7 @@ from circle_bounce_ros.viewer.connections import PATIENCE, Connections
 from circle_bounce_ros.viewer.contacts import Contacts
 from circle_bounce_ros.viewer.messages import LARGEST_MESSAGE, MessageError, read
 from circle_bounce_ros.viewer.ros_link import Refusal, RosLink
-from circle_bounce_ros.viewer.seldom import LONGEST, SeldomLog, http_log
+from circle_bounce_ros.viewer.seldom import SeldomLog, http_log, one_line
 
 MOST_CLIENTS = 32
 QUIET = 10.0  # s without a word after which a page makes room for another; one that draws speaks all the time
@@ -139,7 +139,7 @@ class Server:
             self._take(channel, message)
         except ValueError as error:
             # Somebody else's message, and it comes sixty times a second.
-            fault = ' '.join(str(error).split())[:LONGEST]
+            fault = one_line(str(error))
             self._log(f'{channel}: cannot be read: {fault}')
             self._faults[channel] = fault
         if (self._faults.get(channel) is None) != (before is None):

@@ -347,3 +347,11 @@ def test_of_a_bag_the_energy_of_all_of_it_is_shown(tmp_path):
     assert record.main(['lesson', '--duration', '90', '--rate', '10', '-o', str(folder)]) == 0
     assert plot.main(['energy', str(folder), '-o', str(tmp_path / 'a.png')]) == 0
     assert numbers_of_picture(tmp_path / 'a.png')['duration'] == pytest.approx(89.9)
+
+
+def test_tables_are_not_taken_for_a_bag_that_was_cut_short(tmp_path, capsys):
+    folder = tmp_path / 'tables'
+    arguments = ['lesson', '--duration', '0.1', '--format', 'parquet', '-o', str(folder)]
+    assert record.main(arguments) == 0
+    assert plot.main(['energy', str(folder), '-o', str(tmp_path / 'a.png')]) == 1
+    assert f'{folder}: must be a bag, got Parquet tables' in capsys.readouterr().err

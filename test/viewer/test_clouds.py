@@ -12,6 +12,7 @@ from circle_bounce_ros.encoding.clouds import BODY
 from circle_bounce_ros.kernel import CONTACT, Circle, ContactKind, Scene, Simulation
 from circle_bounce_ros.viewer.cloud import read_cloud, stamp_of
 from circle_bounce_ros.viewer.contacts import Contacts
+from circle_bounce_ros.viewer.seldom import LONGEST
 
 BODIES = BodiesEncoder('world', [3, 5], [0.1, 0.2], [1.0, 1.0])
 CONTACTS = ContactsEncoder('world')
@@ -161,3 +162,17 @@ def test_bodies_that_no_page_could_draw_are_said_and_the_next_ones_drawn():
     assert faults['bodies'].startswith('cloud.fields.x: must end')
     assert stamp_of(message) == 20
     assert len(logged) == 1
+
+
+def test_a_fault_is_one_short_printable_line_whatever_fields_are_called():
+    async def look():
+        async with serving() as (server, link, address), connected(address) as page:
+            server.hear(
+                'bodies', cloud_of([('\x1b[31m\n\u202e' * 200, 0, 7, 1)], b'', width=1, step=0)
+            )
+            said = await page.until(lambda m: isinstance(m, dict) and m.get('faults'))
+            return [said['faults']['bodies'], *link.logged]
+
+    for text in run(look()):
+        assert text.isprintable()
+        assert len(text) <= LONGEST
