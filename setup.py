@@ -19,7 +19,7 @@ def share(*folders):
 setup(
     name=PACKAGE,
     version='0.1.0',
-    description='Circles that bounce off circles and walls, computed exactly, and published on ROS 2 topics',
+    description='Exact event-driven simulation of bouncing circles for ROS 2',
     license='Apache-2.0',
     author='circle_bounce_ros developers',
     author_email='developers@circle-bounce-ros.example.com',

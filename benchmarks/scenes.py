@@ -56,14 +56,13 @@ def sizes(count: int, ratio: float, share: float) -> Scene:
 def ghosts(count: int) -> Scene:
     """Return balls that pass through each other, among 100 locked circles of three times their radius."""
     posts = in_a_square([Kind(100, 3.0, locked=True), Kind(1, 1.0)], PACKING)
-    chance = random.Random(SEED)
+    rng = random.Random(SEED)
     box = bounds(posts.walls)
     room = Room(2.0 * 3.0)
     for post in posts.circles[:100]:
         room.add(post.position, post.radius)
     balls = [
-        Circle(room.find(box, 1.0, chance), velocity(chance, SPEED), radius=1.0)
-        for _ in range(count)
+        Circle(room.find(box, 1.0, rng), velocity(rng, SPEED), radius=1.0) for _ in range(count)
     ]
     return Scene([*posts.circles[:100], *balls], posts.walls, moving_circles_collide=False)
 
@@ -96,14 +95,14 @@ def in_a_polygon(
     def fits(x: float, y: float, radius: float) -> bool:
         return all(across(wall, x, y) >= radius * (1.0 + 1e-9) for wall in walls)
 
-    chance = random.Random(SEED)
+    rng = random.Random(SEED)
     room = Room(2.0 * max(kind.radius for kind in kinds))
     circles = []
     for kind in sorted(kinds, key=lambda kind: -kind.radius):
         for _ in range(kind.count):
-            place = room.find(bounds(walls), kind.radius, chance, fits)
+            place = room.find(bounds(walls), kind.radius, rng, fits)
             room.add(place, kind.radius)
-            moves = velocity(chance, speed / math.sqrt(kind.mass))
+            moves = velocity(rng, speed / math.sqrt(kind.mass))
             circles.append(
                 Circle(
                     place,
@@ -116,10 +115,10 @@ def in_a_polygon(
     return Scene(circles, walls)
 
 
-def velocity(chance: random.Random, radii_per_frame: float) -> Point:
+def velocity(rng: random.Random, radii_per_frame: float) -> Point:
     """Return a velocity, m/s, whose components are normal with this deviation."""
     deviation = radii_per_frame / FRAME
-    return chance.gauss(0.0, deviation), chance.gauss(0.0, deviation)
+    return rng.gauss(0.0, deviation), rng.gauss(0.0, deviation)
 
 
 def polygon(points: list[Point]) -> list[Wall]:
@@ -162,14 +161,14 @@ class Room:
         self,
         box: tuple[Point, Point],
         radius: float,
-        chance: random.Random,
+        rng: random.Random,
         fits: Rule | None = None,
     ) -> Point:
         """Return a random place in a box where a circle touches no other, and that a rule allows."""
         (left, bottom), (right, top) = box
         while True:
-            x = chance.uniform(left + radius, right - radius)
-            y = chance.uniform(bottom + radius, top - radius)
+            x = rng.uniform(left + radius, right - radius)
+            y = rng.uniform(bottom + radius, top - radius)
             if self._is_free(x, y, radius) and (fits is None or fits(x, y, radius)):
                 return x, y
 

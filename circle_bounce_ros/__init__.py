@@ -1,1 +1,1 @@
-"""Circles that bounce, exactly, and say so on ROS 2 topics."""
+"""Exact event-driven simulation of bouncing circles for ROS 2."""

@@ -104,7 +104,7 @@ class Table:
             self.flush()
 
     def flush(self) -> None:
-        """Write the rows that wait as a part; without any, an empty first part."""
+        """Write the buffered rows as a part; without any, an empty first part."""
         if not self._pending and self._parts:
             return
         arrays = [
@@ -126,7 +126,7 @@ class Table:
         return np.concatenate([columns[name] for columns in self._pending])
 
     def forget(self) -> None:
-        """Give up the rows that wait."""
+        """Discard buffered rows."""
         self._pending, self._rows = [], 0
 
 
@@ -203,13 +203,13 @@ class ParquetFolder:
         return {'stamp': np.full(len(time), moment.stamp_ns), 'time': time}
 
     def close(self) -> None:
-        """Write what waits."""
+        """Write buffered rows."""
         for table in self._tables.values():
             table.flush()
         os.close(self._lock)
 
     def abort(self) -> None:
-        """Give up what waits; the parts that are written stay."""
+        """Discard buffered rows; the parts that are written stay."""
         for table in self._tables.values():
             table.forget()
         os.close(self._lock)

@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from circle_bounce_ros.kernel import Circle, SceneError, Wall
-from circle_bounce_ros.scene_file import chance
-from circle_bounce_ros.scene_file.chance import Draw
+from circle_bounce_ros.scene_file import rng
 from circle_bounce_ros.scene_file.placement import Point, Region, on_a_lattice, one_after_the_other
+from circle_bounce_ros.scene_file.rng import Draw
 from circle_bounce_ros.scene_file.walls import box_corners
 from circle_bounce_ros.scene_file.wording import shown
 
@@ -43,7 +43,7 @@ def fill(
         When the group cannot be: too many circles, none, a region without area, no room.
 
     """
-    draw = chance.draws_of_group(seed, index)
+    draw = rng.draws_of_group(seed, index)
     locked = group.get('locked', False)
     speed = group.get('speed', 0)
     if locked and speed != 0:
@@ -80,7 +80,7 @@ def _radii(group: dict[str, Any], area: float, draw: Draw) -> list[float]:
     if smallest == largest:
         return [largest] * (count or max(1, round(covered / (math.pi * largest * largest))))
     if count:
-        radii = [chance.uniform(draw, smallest, largest) for _ in range(count)]
+        radii = [rng.uniform(draw, smallest, largest) for _ in range(count)]
     else:
         radii = _radii_that_cover(covered, smallest, largest, draw)
     return sorted(radii, reverse=True)
@@ -108,7 +108,7 @@ def _radii_that_cover(covered: float, smallest: float, largest: float, draw: Dra
     radii: list[float] = []
     left = covered
     while True:
-        radius = chance.uniform(draw, smallest, largest)
+        radius = rng.uniform(draw, smallest, largest)
         disk = math.pi * radius * radius
         if radii and disk > 2.0 * left:
             return radii
@@ -136,8 +136,8 @@ def _positions(
 
 def _velocity(speed: float | dict[str, float], draw: Draw) -> tuple[float, float]:
     if isinstance(speed, dict):
-        return chance.maxwell(draw, speed['maxwell'])
+        return rng.maxwell(draw, speed['maxwell'])
     if speed == 0:
         return 0.0, 0.0
-    x, y = chance.direction(draw)
+    x, y = rng.direction(draw)
     return speed * x, speed * y

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from circle_bounce_ros.kernel import Circle, Wall
-from circle_bounce_ros.scene_file.chance import Draw, choose, uniform
+from circle_bounce_ros.scene_file.rng import Draw, choose, uniform
 
 Point = tuple[float, float]
 
@@ -147,7 +147,7 @@ def on_a_lattice(
     region: Region, radii: list[float], circles: list[Circle], walls: list[Wall], draw: Draw
 ) -> list[Point]:
     """
-    Return places on the widest lattice with enough free ones; chance says which of them stay empty.
+    Return places on the widest lattice with enough free ones; random numbers say which of them stay empty.
 
     Parameters and what is returned are those of `one_after_the_other`; every place has room for the
     largest circle.

@@ -216,7 +216,7 @@ class WallSchedule(Schedule):
         self._progress.dropped_ns += (passed - made_up) * self._time_scale
 
     def came_to(self, reached_ns: int) -> bool:
-        """Give up what could not be reached, and show what was; only a step is worth the wait."""
+        """Drop scene time that could not be reached, and show what was; only a step is worth the wait."""
         missing = self.scene_ns - reached_ns
         if self.paused:
             return missing <= 0

@@ -18,7 +18,7 @@ from circle_bounce_ros.kernel import (
     time_to_touch,
     time_to_wall,
 )
-from circle_bounce_ros.scene_file.chance import direction
+from circle_bounce_ros.scene_file.rng import direction
 
 from . import style as s
 

@@ -1,4 +1,4 @@
-"""A scene that is too heavy costs smoothness and scene time, but never an answer and never the truth."""
+"""A scene that is too heavy skips frames and scene time; services answer and states stay exact."""
 
 from __future__ import annotations
 

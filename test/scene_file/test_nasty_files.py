@@ -68,17 +68,17 @@ def places(value, path=()):
         yield from places(inner, (*path, key))
 
 
-def spoil(data, chance):
+def spoil(data, rng):
     """Return a copy in which one place is something else, or is missing."""
     data = copy.deepcopy(data)
-    *outer, last = chance.choice(list(places(data)))
+    *outer, last = rng.choice(list(places(data)))
     holder = data
     for key in outer:
         holder = holder[key]
-    if chance.random() < 0.1:
+    if rng.random() < 0.1:
         del holder[last]
     else:
-        holder[last] = chance.choice(NASTY)
+        holder[last] = rng.choice(NASTY)
     return data
 
 
@@ -96,12 +96,12 @@ def is_one_line_about(path, sentence):
 
 @pytest.mark.parametrize('seed', range(8))
 def test_a_spoiled_file_gives_a_scene_or_one_line(seed, write):
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     scenes = 0
     for _ in range(100):
         data = GOOD
-        for _ in range(chance.randint(1, 3)):
-            data = spoil(data, chance)
+        for _ in range(rng.randint(1, 3)):
+            data = spoil(data, rng)
         path = write(yaml.safe_dump(data))
         result = outcome(path)
         assert isinstance(result, Scene) or is_one_line_about(path, result)
@@ -112,13 +112,13 @@ def test_a_spoiled_file_gives_a_scene_or_one_line(seed, write):
 
 @pytest.mark.parametrize('seed', range(4))
 def test_bytes_at_random_give_one_line(seed, tmp_path):
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     good = yaml.safe_dump(GOOD).encode()
     path = tmp_path / 'bytes.yaml'
     for _ in range(100):
         data = bytearray(good)
-        for _ in range(chance.randint(1, 5)):
-            data[chance.randrange(len(data))] = chance.choice(b'\0\t\n\xff!&*-:[]{}"\'|>%@`#?,~0a')
+        for _ in range(rng.randint(1, 5)):
+            data[rng.randrange(len(data))] = rng.choice(b'\0\t\n\xff!&*-:[]{}"\'|>%@`#?,~0a')
         path.write_bytes(data)
         result = outcome(path)
         assert isinstance(result, Scene) or is_one_line_about(path, result)

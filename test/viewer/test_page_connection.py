@@ -78,7 +78,7 @@ def test_the_page_comes_back_when_the_viewer_does(show, stage):
 
 
 STAY_SLOW = """
-bounce.pace.isSlow && bounce.node.values.time_scale === '0.12' && (bounce.pace.followContact = () => {}, true)
+bounce.playback.isSlow && bounce.node.values.time_scale === '0.12' && (bounce.playback.followContact = () => {}, true)
 """
 
 

@@ -66,20 +66,20 @@ def test_the_speed_is_the_nodes_parameter(lesson_page, observer):
 
 SPEED_AND_REPORTS = """
 async (load) => {
-  const { Pace, SPEEDS } = await load('pace.js');
+  const { PlaybackSpeed, SPEEDS } = await load('playback.js');
   const sent = [];
-  const pace = new Pace((message) => { sent.push(message.value); return true; });
-  const said = (value) => { pace.hear(value, performance.now()); return pace.chosen; };
+  const playback = new PlaybackSpeed((message) => { sent.push(message.value); return true; });
+  const said = (value) => { playback.hear(value, performance.now()); return playback.chosen; };
   const log = {};
-  pace.choose(SPEEDS.indexOf(2));
+  playback.choose(SPEEDS.indexOf(2));
   log.beforeItIsAsked = said(1);
   while (!sent.length) await new Promise(requestAnimationFrame);
   log.beforeItIsDone = said(1);
   log.done = said(2);
-  pace.followContact(0, { time: 0.01 });
+  playback.followContact(0, { time: 0.01 });
   log.slow = said(2);
   said(0.24);
-  pace.followContact(1e9, { time: 100 });
+  playback.followContact(1e9, { time: 100 });
   log.afterwards = said(0.24);
   log.doneAgain = said(2);
   log.byOthers = said(5);
@@ -104,14 +104,14 @@ def test_a_report_from_before_a_change_does_not_undo_it(scripts):
 
 LOST_END = """
 async (load) => {
-  const { Pace } = await load('pace.js');
+  const { PlaybackSpeed } = await load('playback.js');
   const sent = [];
-  const pace = new Pace((message) => { sent.push(message.value); return true; });
-  const said = (value) => { pace.hear(value, performance.now()); return pace.chosen; };
+  const playback = new PlaybackSpeed((message) => { sent.push(message.value); return true; });
+  const said = (value) => { playback.hear(value, performance.now()); return playback.chosen; };
   said(2);
-  pace.followContact(0, { time: 0.01 });
+  playback.followContact(0, { time: 0.01 });
   said(0.24);
-  pace.forget();
+  playback.forget();
   const log = { back: said(0.24), beforeItIsDone: said(0.24), done: said(2), byOthers: said(0.24) };
   return { ...log, sent };
 }

@@ -267,17 +267,18 @@ def test_before_the_contact_the_distance_is_drawn_with_a_ghost_where_they_will_t
 # Whether each turn to slow motion came before a contact, rather than in the time after one.
 WATCH_TURNS = """
 () => {
-  const { pace } = bounce;
-  const turn = pace.turn.bind(pace);
-  const touched = pace.touched.bind(pace);
+  const { playback } = bounce;
+  const turn = playback.turn.bind(playback);
+  const touched = playback.touched.bind(playback);
   window.before = [];
   window.speeds = []; // that the node had reported, at each contact
-  pace.touched = (now) => {
+  playback.touched = (now) => {
     window.speeds.push(bounce.node.values.time_scale);
     touched(now);
   };
-  pace.turn = (isSlow) => {
-    if (isSlow) window.before.push(performance.now() > pace.slowUntil && bounce.story.next.time / pace.chosen < 0.3);
+  playback.turn = (isSlow) => {
+    const isSoon = bounce.story.next.time / playback.chosen < 0.3;
+    if (isSlow) window.before.push(performance.now() > playback.slowUntil && isSoon);
     turn(isSlow);
   };
 }
@@ -300,7 +301,7 @@ def test_slow_motion_begins_before_a_contact_and_ends_after_it(lesson_page):
 
 # As a browser does with a tab that nobody sees.
 HIDE_IN_SLOW_MOTION = """
-bounce.pace.isSlow && bounce.node.values.time_scale === '0.12' && (() => {
+bounce.playback.isSlow && bounce.node.values.time_scale === '0.12' && (() => {
   window.requestAnimationFrame = () => 0;
   Object.defineProperty(document, 'hidden', { value: true });
   document.dispatchEvent(new Event('visibilitychange'));

@@ -2,7 +2,7 @@
 
 import { find } from './dom.js';
 import { Keyboard } from './keyboard.js';
-import { SPEEDS } from './pace.js';
+import { SPEEDS } from './playback.js';
 import { bindPointer } from './pointer.js';
 import { bindScenes, hearRefusal } from './scenes.js';
 
@@ -15,7 +15,7 @@ const flip = (id) => () => {
 };
 
 export function bindControls(app) {
-  const { looks, node, pace, view } = app;
+  const { looks, node, playback, view } = app;
   const help = () => (find('keys').open ? find('keys').close() : find('keys').showModal());
 
   bindPointer(find('bodies'), {
@@ -41,7 +41,7 @@ export function bindControls(app) {
   for (const [id, does] of Object.entries(clicks)) find(id).addEventListener('click', does);
 
   find('speed').max = String(SPEEDS.length - 1);
-  find('speed').addEventListener('input', () => pace.choose(Number(find('speed').value)));
+  find('speed').addEventListener('input', () => playback.choose(Number(find('speed').value)));
   find('trails').addEventListener('input', () => looks.setTrail(Number(find('trails').value)));
   find('slow').addEventListener('change', () => find('slow').checked && app.selectAny());
   find('follow').addEventListener('change', () => app.followSelected(find('follow').checked));
@@ -51,7 +51,7 @@ export function bindControls(app) {
   }
   bindScenes(({ scene, seed }) => {
     looks.choice = null;
-    pace.endSlow();
+    playback.endSlow();
     if (!node.ask({ type: 'scene', scene, seed })) hearRefusal(node.values.scene);
   });
 
@@ -59,8 +59,8 @@ export function bindControls(app) {
     ' ': ['Stop and go on', clicks.pause, 'Space'],
     '.': ['While paused: one period further', clicks.step],
     r: ['From the first instant', clicks.reset],
-    '[': ['Slower', () => pace.change(-1)],
-    ']': ['Faster', () => pace.change(1)],
+    '[': ['Slower', () => playback.change(-1)],
+    ']': ['Faster', () => playback.change(1)],
     s: ['Choose a scene', () => find('scene').focus()],
     k: ['Next circle', clicks.next],
     j: ['Previous circle', clicks.previous],

@@ -8,7 +8,7 @@ import { Looks } from './looks.js';
 import { RemoteNode } from './node.js';
 import { announce, showState, whatIsMissing } from './notices.js';
 import { Overlay } from './overlay.js';
-import { Pace } from './pace.js';
+import { PlaybackSpeed } from './playback.js';
 import { describeScene, showApproach, showContact, showReport, showSquares, showTime } from './panel.js';
 import { EnergyPlot, drawSpeeds } from './plots.js';
 import { fillScenes, hearRefusal, showScene } from './scenes.js';
@@ -34,7 +34,7 @@ class App {
     this.overlay = new Overlay(find('overlay'));
     this.energyPlot = new EnergyPlot(find('energy'));
     this.node = new RemoteNode(send);
-    this.pace = new Pace(send);
+    this.playback = new PlaybackSpeed(send);
     this.afterDraw = null; // for tests: called right after a frame has been drawn, while it can be read back
     this.pending = null; // the newest frame, not looked at yet
     this.received = 0; // its number
@@ -67,9 +67,9 @@ class App {
     bindControls(this);
     requestAnimationFrame((now) => this.animate(now));
     window.setInterval(() => this.watch(), WATCH_PERIOD);
-    window.addEventListener('pagehide', () => this.pace.endSlow());
+    window.addEventListener('pagehide', () => this.playback.endSlow());
     // What is hidden is not drawn, and it is the drawing that ends slow motion.
-    document.addEventListener('visibilitychange', () => document.hidden && this.pace.endSlow());
+    document.addEventListener('visibilitychange', () => document.hidden && this.playback.endSlow());
   }
 
   // What comes in
@@ -86,7 +86,7 @@ class App {
     this.received = 0;
     this.node.publishers = null;
     this.node.faults = {};
-    this.pace.forget();
+    this.playback.forget();
     this.watch();
   }
 
@@ -116,7 +116,7 @@ class App {
     else if (message.type === 'answer') {
       const { to, done, text } = message;
       if (to === 'scene' && !done) hearRefusal(this.node.values.scene);
-      if (to !== 'time_scale' || this.pace.hearAnswer(done)) announce(text, !done);
+      if (to !== 'time_scale' || this.playback.hearAnswer(done)) announce(text, !done);
     }
   }
 
@@ -127,7 +127,7 @@ class App {
       showScene(values.scene);
     }
     this.energyPlot.add(performance.now() / 1000, Number(values['energy error']));
-    this.pace.hear(Number(values.time_scale), performance.now());
+    this.playback.hear(Number(values.time_scale), performance.now());
     showReport(message, this.node.paused);
     this.watch();
   }
@@ -205,25 +205,25 @@ class App {
   }
 
   tellStory(now, passed, isNew) {
-    const { node, pace, story, world } = this;
+    const { node, playback, story, world } = this;
     if (story.update(world, passed, node.paused).length) {
       showContact(story.last);
-      pace.touched(now);
+      playback.touched(now);
     }
     if (isNew) story.remember(world.seconds, this.looks.trail);
     if (isNew && find('follow').checked && story.now) this.view.follow(story.now);
-    if (!find('slow').checked || !story.now) pace.endSlow();
-    else if (!node.paused) pace.followContact(now, story.next);
+    if (!find('slow').checked || !story.now) playback.endSlow();
+    else if (!node.paused) playback.followContact(now, story.next);
     this.isDirty ||= isNew || story.freshness > 0;
   }
 
   draw(now, isNew) {
     this.isDirty = false;
     if (isNew) this.drawTimes.push(now);
-    const { looks, pace, story, view, world } = this;
+    const { looks, playback, story, view, world } = this;
     const all = {
       camera: view.camera, ratio: view.ratio, look: looks.colours, mode: looks.mode, fastest: looks.fastest, trail: looks.trail,
-      largest: this.largest, world, story, squares: find('squares').checked, untilNext: story.untilNext(pace.rate),
+      largest: this.largest, world, story, squares: find('squares').checked, untilNext: story.untilNext(playback.rate),
     };
     this.picture.draw(all);
     if (this.afterDraw) this.afterDraw(this);
@@ -262,7 +262,7 @@ class App {
     this.story.select(circle);
     this.link.send({ type: 'select', circle });
     if (circle < 0) {
-      this.pace.endSlow();
+      this.playback.endSlow();
       find('follow').checked = false;
     }
     showContact(null);

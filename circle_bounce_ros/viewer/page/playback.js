@@ -10,7 +10,7 @@ const SLOWDOWN = 0.12; // of the speed chosen
 const SLOW_BEFORE = 0.3; // s of the wall, before a contact
 const SLOW_AFTER = 1200; // ms of the wall, after one
 
-export class Pace {
+export class PlaybackSpeed {
   // send(message): returns whether it could be sent.
   constructor(send) {
     this.send = send;
