@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from circle_bounce_ros.kernel import candidates
+from circle_bounce_ros.kernel.candidates import Pairs
+
 if TYPE_CHECKING:
     from circle_bounce_ros.kernel.scene import Scene
 
 Floats = NDArray[np.float64]
+
+# Candidate pairs of circles, for each circle and at least. Circles that do not overlap have fewer, so the search
+# for a deeper overlap ends here.
+ENOUGH_FOR_EACH = 32
+ENOUGH = 1_000_000
 
 
 class Overlap(NamedTuple):
@@ -62,57 +71,72 @@ def deepest(bodies: Bodies, allowed: float = 0.0) -> Overlap:
     -------
     Overlap
         Its depth is negative when nothing overlaps; then it is the nearest pair found, and the
-        gaps of pairs whose x ranges do not meet are not looked at.
+        gaps of pairs that are no neighbours are not looked at. Where very many circles overlap,
+        it is the deepest of the first 32 pairs a circle, a million at least.
 
     """
     return max(_among_circles(bodies, allowed), _with_walls(bodies, allowed))
 
 
 def _among_circles(bodies: Bodies, allowed: float) -> Overlap:
-    """Sweep along x: the k-th next circle is looked at while any range still reaches it."""
-    left = bodies.positions[:, 0] - bodies.radii
-    order = np.argsort(left, kind='stable')
-    position, radius, locked = bodies.positions[order], bodies.radii[order], bodies.locked[order]
-    left = left[order]
-    right = position[:, 0] + radius
-    best = NONE
-    first: NDArray[np.intp] = np.arange(len(order))
-    step = 0
-    while True:
-        step += 1
-        first = first[first + step < len(order)]
-        first = first[left[first + step] <= right[first]]
-        if len(first) == 0:
-            return best
-        second = first + step
-        asked = ~(locked[first] & locked[second])
-        if not bodies.moving_circles_collide:
-            asked &= locked[first] | locked[second]
-        i, j = first[asked], second[asked]
-        if len(i) == 0:
-            continue
-        gap = np.hypot(*(position[i] - position[j]).T)
-        depth = radius[i] + radius[j] - gap - allowed * np.minimum(radius[i], radius[j])
+    enough = max(ENOUGH, ENOUGH_FOR_EACH * len(bodies.radii))
+    best, count = NONE, 0
+    for i, j in circle_candidates(bodies):
+        radius_i, radius_j = bodies.radii[i], bodies.radii[j]
+        gap = np.hypot(*(bodies.positions[i] - bodies.positions[j]).T)
+        depth = radius_i + radius_j - gap - allowed * np.minimum(radius_i, radius_j)
         k = int(np.argmax(depth))
-        a, b = sorted((int(order[i[k]]), int(order[j[k]])))
+        a, b = sorted((int(i[k]), int(j[k])))
         best = max(best, Overlap(float(depth[k]), a, b, False))
+        count += len(i)
+        if count > enough and best.depth > 0.0:
+            break
+    return best
+
+
+def circle_candidates(bodies: Bodies) -> Iterator[Pairs]:
+    """
+    Yield the pairs of circles that may overlap, in pieces.
+
+    A grid for each size class, in which every circle of this class or a smaller one looks up its
+    own cell and the eight around it. Locked and moving circles have grids of their own: pairs that
+    do not count are not made.
+    """
+    size = candidates.size_classes(bodies.radii)
+    moving, locked = np.flatnonzero(~bodies.locked), np.flatnonzero(bodies.locked)
+    for level in np.unique(size):
+        movers, posts = moving[size[moving] == level], locked[size[locked] == level]
+        side = float(np.ldexp(1.0, level + 1))
+        smaller = moving[size[moving] < level]
+        if bodies.moving_circles_collide:
+            yield from candidates.within(bodies.positions, movers, side)
+            yield from candidates.between(bodies.positions, movers, smaller, side)
+        yield from candidates.between(bodies.positions, posts, smaller, side)
+        yield from candidates.between(bodies.positions, posts, movers, side)
+        smaller = locked[size[locked] < level]
+        yield from candidates.between(bodies.positions, movers, smaller, side)
 
 
 def _with_walls(bodies: Bodies, allowed: float) -> Overlap:
-    """Distance of each moving circle's centre from the nearest point of each wall."""
-    ids = np.flatnonzero(~bodies.locked)
-    position, radius = bodies.positions[ids], bodies.radii[ids]
+    """Distance of each moving circle's centre from the nearest point of each wall near it."""
+    along = bodies.walls[:, 2:] - bodies.walls[:, :2]
+    length = np.hypot(*along.T)
+    units = along / length[:, None]
     best = NONE
-    for number, (sx, sy, ex, ey) in enumerate(bodies.walls):
-        start, along = np.array((sx, sy)), np.array((ex - sx, ey - sy))
-        length = np.hypot(*along)
-        unit = along / length
-        offset = position - start
-        inside = np.clip(offset @ unit, 0.0, length)
+    for circle, wall in wall_candidates(bodies):
+        radius, unit = bodies.radii[circle], units[wall]
+        offset = bodies.positions[circle] - bodies.walls[wall, :2]
+        foot = offset[:, 0] * unit[:, 0] + offset[:, 1] * unit[:, 1]
         # Across the flat the distance is taken from the normal: exacter than from the foot.
-        across = np.abs(offset @ np.array((-unit[1], unit[0])))
-        beyond = offset @ unit - inside
+        across = offset[:, 1] * unit[:, 0] - offset[:, 0] * unit[:, 1]
+        beyond = foot - np.clip(foot, 0.0, length[wall])
         depth = radius - np.hypot(across, beyond) - allowed * radius
         k = int(np.argmax(depth))
-        best = max(best, Overlap(float(depth[k]), int(ids[k]), number, True))
+        best = max(best, Overlap(float(depth[k]), int(circle[k]), int(wall[k]), True))
     return best
+
+
+def wall_candidates(bodies: Bodies) -> Iterator[Pairs]:
+    """Yield the pairs of a moving circle and a wall that may overlap, in pieces."""
+    moving = np.flatnonzero(~bodies.locked)
+    yield from candidates.with_segments(bodies.positions, bodies.radii, moving, bodies.walls)
