@@ -124,8 +124,8 @@ def with_segments(
             waiting.append((level - 1, np.tile(segment, 2)[inside], box[inside]))
             continue
         begin = LEAF * box
-        for number, circle in _pieces(segment, ids, begin, np.minimum(begin + LEAF, len(ids))):
-            yield circle, number
+        for found, circle in _pieces(segment, ids, begin, np.minimum(begin + LEAF, len(ids))):
+            yield circle, found
 
 
 def _z_order(positions: Floats) -> Ints:
