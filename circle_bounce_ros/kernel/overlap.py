@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+EPSILON = float(np.finfo(float).eps)
+
 # Candidate pairs of circles, for each circle and at least. Circles that do not overlap have fewer, so the search
 # for a deeper overlap ends here.
 ENOUGH_FOR_EACH = 32
@@ -26,13 +28,14 @@ ENOUGH = 1_000_000
 class Overlap(NamedTuple):
     """Two bodies and their overlap: circles by id, or a circle and a wall by number."""
 
+    excess: float  # m, what the overlap has beyond the allowance
     depth: float  # m, negative: the smallest gap
     a: int
     b: int
     b_is_wall: bool
 
 
-NONE = Overlap(-np.inf, -1, -1, False)
+NONE = Overlap(-np.inf, -np.inf, -1, -1, False)
 
 
 @dataclass(frozen=True)
@@ -57,15 +60,17 @@ class Bodies:
         )
 
 
-def deepest(bodies: Bodies, allowed: float = 0.0) -> Overlap:
+def deepest(bodies: Bodies, allowed: float = 0.0, roundings: float = 0.0) -> Overlap:
     """
-    Return the pair whose overlap is the deepest, locked bodies among themselves left out.
+    Return the pair whose overlap exceeds the allowance most, locked bodies among themselves left out.
 
     Parameters
     ----------
     bodies : Bodies
     allowed : float, no unit
-        Counts overlaps from this fraction of the smaller radius on.
+        The allowance, as a fraction of the smaller radius.
+    roundings : float, no unit
+        Beside it, in units of 2.2e-16 times the largest coordinate or radius of the pair.
 
     Returns
     -------
@@ -75,21 +80,27 @@ def deepest(bodies: Bodies, allowed: float = 0.0) -> Overlap:
         it is the deepest of the first 32 pairs a circle, a million at least.
 
     """
-    return max(_among_circles(bodies, allowed), _with_walls(bodies, allowed))
+    return max(
+        _among_circles(bodies, allowed, roundings * EPSILON),
+        _with_walls(bodies, allowed, roundings * EPSILON),
+    )
 
 
-def _among_circles(bodies: Bodies, allowed: float) -> Overlap:
+def _among_circles(bodies: Bodies, allowed: float, rounding: float) -> Overlap:
     enough = max(ENOUGH, ENOUGH_FOR_EACH * len(bodies.radii))
     best, count = NONE, 0
+    size = np.maximum(np.abs(bodies.positions).max(axis=1), bodies.radii)
     for i, j in circle_candidates(bodies):
         radius_i, radius_j = bodies.radii[i], bodies.radii[j]
         gap = np.hypot(*(bodies.positions[i] - bodies.positions[j]).T)
-        depth = radius_i + radius_j - gap - allowed * np.minimum(radius_i, radius_j)
-        k = int(np.argmax(depth))
+        depth = radius_i + radius_j - gap
+        allowance = allowed * np.minimum(radius_i, radius_j)
+        excess = depth - allowance - rounding * np.maximum(size[i], size[j])
+        k = int(np.argmax(excess))
         a, b = sorted((int(i[k]), int(j[k])))
-        best = max(best, Overlap(float(depth[k]), a, b, False))
+        best = max(best, Overlap(float(excess[k]), float(depth[k]), a, b, False))
         count += len(i)
-        if count > enough and best.depth > 0.0:
+        if count > enough and best.excess > 0.0:
             break
     return best
 
@@ -117,12 +128,14 @@ def circle_candidates(bodies: Bodies) -> Iterator[Pairs]:
         yield from candidates.between(bodies.positions, movers, smaller, side)
 
 
-def _with_walls(bodies: Bodies, allowed: float) -> Overlap:
+def _with_walls(bodies: Bodies, allowed: float, rounding: float) -> Overlap:
     """Distance of each moving circle's centre from the nearest point of each wall near it."""
     along = bodies.walls[:, 2:] - bodies.walls[:, :2]
     length = np.hypot(*along.T)
     units = along / length[:, None]
     best = NONE
+    size = np.maximum(np.abs(bodies.positions).max(axis=1), bodies.radii)
+    size_of_wall = np.abs(bodies.walls).max(axis=1)
     for circle, wall in wall_candidates(bodies):
         radius, unit = bodies.radii[circle], units[wall]
         offset = bodies.positions[circle] - bodies.walls[wall, :2]
@@ -130,9 +143,12 @@ def _with_walls(bodies: Bodies, allowed: float) -> Overlap:
         # Across the flat the distance is taken from the normal: exacter than from the foot.
         across = offset[:, 1] * unit[:, 0] - offset[:, 0] * unit[:, 1]
         beyond = foot - np.clip(foot, 0.0, length[wall])
-        depth = radius - np.hypot(across, beyond) - allowed * radius
-        k = int(np.argmax(depth))
-        best = max(best, Overlap(float(depth[k]), int(circle[k]), int(wall[k]), True))
+        depth = radius - np.hypot(across, beyond)
+        excess = depth - allowed * radius - rounding * np.maximum(size[circle], size_of_wall[wall])
+        k = int(np.argmax(excess))
+        best = max(
+            best, Overlap(float(excess[k]), float(depth[k]), int(circle[k]), int(wall[k]), True)
+        )
     return best
 
 

@@ -18,6 +18,10 @@ NAME_RULE = 'must be a letter followed by letters, digits or single underscores'
 # Circles of a scene may overlap by this fraction of the smaller radius: rounding, not a fault.
 ALLOWED_OVERLAP = 1e-12
 
+# And by so many units of 2.2e-16 of the largest coordinate or radius of the two: places that touch are computed from
+# others, and each of the coordinates is rounded.
+ALLOWED_ROUNDINGS = 8.0
+
 
 class SceneError(ValueError):
     """
@@ -181,8 +185,8 @@ class Scene:
             raise SceneError(*fault)
 
     def _check_overlaps(self, bodies: Bodies) -> None:
-        found = deepest(bodies, allowed=ALLOWED_OVERLAP)
-        if found.depth > 0.0:
+        found = deepest(bodies, ALLOWED_OVERLAP, ALLOWED_ROUNDINGS)
+        if found.excess > 0.0:
             raise SceneError('', self._describe(found))
 
     def _describe(self, found: Overlap) -> str:

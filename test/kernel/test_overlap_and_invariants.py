@@ -72,30 +72,30 @@ def test_the_deepest_overlap_is_the_deepest_of_all_pairs(allowed):
         found = deepest(bodies, allowed)
         if expected[0] > 0.0:
             overlapping += 1
-            assert found.depth == pytest.approx(expected[0], abs=CLOSE)
-            assert found[1:] == expected[1:]
+            assert found.excess == pytest.approx(expected[0], abs=CLOSE)
+            assert found[2:] == expected[1:]
         else:
             # Then it is some pair's gap, the nearest among those that it looked at.
-            assert found.depth <= expected[0] + CLOSE
-            assert found.depth <= 0.0
+            assert found.excess <= expected[0] + CLOSE
+            assert found.excess <= 0.0
     assert 50 < overlapping < 250
 
 
 def test_nothing_to_overlap_with_is_infinitely_far():
     alone = Bodies.of_scene(Scene([Circle((0, 0), radius=1.0)]))
-    assert deepest(alone) == (-math.inf, -1, -1, False)
+    assert deepest(alone) == (-math.inf, -math.inf, -1, -1, False)
 
 
 def test_the_smallest_gap_is_a_negative_depth():
     scene = Scene([Circle((0, 0), radius=1.0), Circle((1.5, 2.0), radius=1.0)])
-    assert deepest(Bodies.of_scene(scene)) == (-0.5, 0, 1, False)
+    assert deepest(Bodies.of_scene(scene)) == (-0.5, -0.5, 0, 1, False)
     scene = Scene([Circle((0, 0), radius=1.0)], [Wall((4, 3), (9, 3)), Wall((-9, 2), (0, 2))])
-    assert deepest(Bodies.of_scene(scene)) == (-1.0, 0, 1, True)
+    assert deepest(Bodies.of_scene(scene)) == (-1.0, -1.0, 0, 1, True)
 
 
 def test_touching_is_an_overlap_of_depth_zero():
     scene = Scene([Circle((1, 0), radius=1.0), Circle((-1, 0), radius=1.0)])
-    assert deepest(Bodies.of_scene(scene)) == (0.0, 0, 1, False)
+    assert deepest(Bodies.of_scene(scene)) == (0.0, 0.0, 0, 1, False)
 
 
 def test_bodies_of_a_scene_are_its_circles_by_id_and_its_walls():
@@ -115,7 +115,7 @@ def test_a_long_sweep_finds_the_one_overlap_among_many():
     bodies = Bodies.of_scene(Scene(circles))
     bodies.positions[71] = bodies.positions[70] + (0.6, 0.0)
     found = deepest(bodies)
-    assert found[1:] == (70, 71, False)
+    assert found[2:] == (70, 71, False)
     assert found.depth == pytest.approx(0.2, abs=CLOSE)
 
 

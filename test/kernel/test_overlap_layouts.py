@@ -113,7 +113,7 @@ def test_locked_circles_at_one_place_are_no_candidates():
 def test_circles_at_one_place_pass_through_each_other():
     bodies = bodies_of(lattice, np.random.default_rng(1), 5000, locked=0.0, collide=False)
     bodies.positions[:] = 0.0
-    assert deepest(bodies) == (-np.inf, -1, -1, False)
+    assert deepest(bodies) == (-np.inf, -np.inf, -1, -1, False)
 
 
 def test_the_search_ends_where_very_many_overlap(monkeypatch):
@@ -161,14 +161,16 @@ def test_the_deepest_of_all_walls_is_found(layout, few, monkeypatch):
         bodies = bodies_of(layout, rng, 100, walls=many_walls(rng, 40, 12.0), collide=False)
         bodies.locked[:] = False
         bodies.radii[:] *= 10.0 ** -float(rng.integers(0, 4))
-        depth = np.stack([bodies.radii - away(bodies.positions, wall) for wall in bodies.walls])
+        depth = np.stack(
+            [bodies.radii - away(bodies.positions, wall) for wall in bodies.walls], axis=1
+        )
         expected = float(depth.max())
         found = deepest(bodies).depth
         # Coordinates are up to 1e12 m in one layout: a few of their roundings, 1e-4 m.
         close = 8 * np.spacing(np.abs(bodies.positions).max() + bodies.radii.max())
         assert found == pytest.approx(expected, abs=close) or max(found, expected) <= 0.0
         pairs = {pair for k in wall_candidates(bodies) for pair in zip(*map(list, k), strict=True)}
-        overlapping = set(zip(*np.nonzero(depth.T > close), strict=True))
+        overlapping = set(zip(*np.nonzero(depth > close), strict=True))
         assert overlapping <= pairs
 
 

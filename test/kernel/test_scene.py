@@ -290,9 +290,9 @@ def test_an_overlap_of_a_trillionth_of_the_smaller_radius_is_rounding(radius):
     with pytest.raises(SceneError, match=r'circles\[0\] and circles\[1\]: must not overlap'):
         Scene([small, locked(outside, 0, radius=2.0 * radius)])
     inside, outside = (radius * (1.0 - share * 1e-12) for share in (0.9, 1.1))
-    Scene([small], [Wall((-1, inside), (1, inside))])
+    Scene([small], [Wall((-radius, inside), (radius, inside))])
     with pytest.raises(SceneError, match=r'circles\[0\] and walls\[0\]: must not overlap'):
-        Scene([small], [Wall((-1, outside), (1, outside))])
+        Scene([small], [Wall((-radius, outside), (radius, outside))])
 
 
 def test_what_is_locked_may_overlap():
