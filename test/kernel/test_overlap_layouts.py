@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from circle_bounce_ros.kernel import candidates
+from circle_bounce_ros.kernel import Circle, Scene, Simulation, candidates
 from circle_bounce_ros.kernel.overlap import (
     ENOUGH,
     Bodies,
@@ -114,6 +114,10 @@ def test_circles_at_one_place_pass_through_each_other():
     bodies = bodies_of(lattice, np.random.default_rng(1), 5000, locked=0.0, collide=False)
     bodies.positions[:] = 0.0
     assert deepest(bodies) == (-np.inf, -np.inf, -1, -1, False)
+    circles = [Circle((1.0, 1.0), (k, 0.0), radius=0.1) for k in range(5000)]
+    simulation = Simulation(Scene(circles, moving_circles_collide=False))
+    simulation.advance_to(0.5)
+    assert simulation.positions[:, 0].tolist() == [1.0 + 0.5 * k for k in range(5000)]
 
 
 def test_the_search_ends_where_very_many_overlap(monkeypatch):
