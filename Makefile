@@ -18,6 +18,7 @@ SET_UP = @$(or $(ANY_PYTHON),$(PYTHON),python3) -S tools/set_up.py --python '$(P
 
 .PHONY: help set-up run listen reset pause resume step set check clean distclean
 .PHONY: bench bench-viewer bench-long bench-soak
+.PHONY: fuzz
 .PHONY: test test-kernel test-compiled-kernel test-bare-kernel test-offline test-rest test-viewer
 
 help:
@@ -27,6 +28,7 @@ help:
 	@echo 'make set        in another terminal: a parameter, NAME=time_scale VALUE=0.1'
 	@echo 'make test       everything that CI runs'
 	@echo 'make check      ruff, mypy and import contracts only'
+	@echo 'make fuzz       odd input of every kind, with new seeds, MINUTES=5; what fails is left in out/fuzz'
 	@echo 'make bench      the engine and the node beside others: docs/benchmarks, 10 minutes'
 	@echo 'make bench-viewer the live page in a browser: docs/viewer.md, 5 minutes'
 	@echo 'make bench-long a run of 10^9 contacts, 6 minutes;   make bench-soak   memory, 10 minutes'
@@ -105,6 +107,11 @@ test-rest: .venv .venvs/kernel .venvs/colcon .venvs/bench
 # The live page in a real browser; where there is none the tests skip and say so.
 test-viewer: .venv
 	$(BIN)/python -m pytest --durations=10 test/viewer
+
+# The tests in test/fuzz are its first cases. One again: ARGS="--target scene --seed 7".
+MINUTES ?= 5
+fuzz: .venv
+	$(BIN)/python test/fuzz/campaign.py --minutes $(MINUTES) $(ARGS)
 
 # The node first: nothing else is at work then.
 bench: .venv .venvs/bench
