@@ -1,6 +1,7 @@
 """
-The kernel: circles, walls and time. It knows no ROS, no scene files, no clock and no network; on disk it keeps
-compiled code only, in a cache folder.
+The kernel: circles, walls and time.
+
+It knows no ROS, no scene files, no clock and no network; on disk it keeps compiled code only, in a cache folder.
 
 Points and vectors are (2,) or (n, 2), all in SI units, x right, y up, angles counter-clockwise.
 """
