@@ -14,6 +14,15 @@ from pathlib import Path
 ENDING = '.begun'
 
 
+def is_utf8(text: str | Path) -> bool:
+    """Return whether an argument of a command was UTF-8: pyarrow takes no other path, a message no other text."""
+    try:
+        str(text).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 @contextmanager
 def begun(path: Path, folder: Path | None = None) -> Iterator[Path]:
     """

@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from circle_bounce_ros.encoding.topics import Moment
 from circle_bounce_ros.kernel import EndlessContactsError, SceneError, Simulation
+from circle_bounce_ros.offline.files import is_utf8
 from circle_bounce_ros.offline.recording import moments
 from circle_bounce_ros.offline.repair import RepairError, clean, is_of_tables, repair
 from circle_bounce_ros.offline.sinks import (
@@ -23,6 +24,7 @@ from circle_bounce_ros.offline.sinks import (
 )
 from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping
 from circle_bounce_ros.scene_file import load_scene
+from circle_bounce_ros.scene_file.wording import shown
 from circle_bounce_ros.schedule.recording import RecordingTicks
 from circle_bounce_ros.schedule.times import SECOND
 
@@ -99,6 +101,10 @@ def record(chosen: argparse.Namespace) -> int:
     topics = chosen.topics and topics_to_record(chosen.topics, scene, chosen.format)
     if not chosen.frame_id:
         raise RecordError("frame-id: must not be empty, got ''")
+    if not is_utf8(chosen.frame_id):
+        raise RecordError(f'frame-id: must be UTF-8 text, got {shown(chosen.frame_id)}')
+    if chosen.format == PARQUET and not is_utf8(chosen.output):
+        raise RecordError(f'output: must be UTF-8 for tables, got {shown(str(chosen.output))}')
     try:
         ticks = RecordingTicks(chosen.rate, chosen.duration, scene.restart_after)
     except ValueError as error:

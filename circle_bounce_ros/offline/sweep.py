@@ -18,12 +18,13 @@ import dask
 from distributed import CancelledError, Client, KilledWorker, LocalCluster, wait
 from tqdm import tqdm
 
-from circle_bounce_ros.offline.files import ENDING, replace
+from circle_bounce_ros.offline.files import ENDING, is_utf8, replace
 from circle_bounce_ros.offline.plan import Plan, PlanError, restore
 from circle_bounce_ros.offline.run import PLAN, perform, remove_unfinished
 from circle_bounce_ros.offline.stopping import INTERRUPTED, Stopping, without_interrupts
 from circle_bounce_ros.offline.summary import ROWS, add_line, finished_rows, write_summary
 from circle_bounce_ros.offline.sweep_file import load_plan
+from circle_bounce_ros.scene_file.wording import shown
 
 COMMAND = 'bounce_sweep'
 LAST_WORDS = f'{COMMAND}: interrupted, what is done is kept: start it again'
@@ -101,6 +102,8 @@ def locked(folder: Path, plan: Plan) -> Iterator[None]:
         When something else is in it, or another one is at work there.
 
     """
+    if not is_utf8(folder):
+        raise SweepError(f'output: must be UTF-8, got {shown(str(folder))}')
     plan_file = folder / PLAN
     if folder.exists() and not plan_file.exists():
         ours = (LOCK, f'.{PLAN}{ENDING}')

@@ -51,6 +51,7 @@ def test_an_existing_target_is_refused_and_nothing_is_touched(tmp_path, capsys, 
         (['lesson', '--duration', '1e9', '--rate', '1e6'], 'duration: must be at most 1000000000'),
         (['lesson', '--duration', 'nan'], 'duration: must be > 0'),
         (['lesson', '--frame-id', ''], 'frame-id: must not be empty'),
+        (['lesson', '--frame-id', '\udcff'], 'frame-id: must be UTF-8'),  # the byte 0xff
         (['lesson', '--format', 'parquet', '--topics', 'poses'], 'must be from bodies, contacts'),
         (['gas', '--seed', '-1'], 'seed: must be'),
     ],
@@ -58,6 +59,12 @@ def test_an_existing_target_is_refused_and_nothing_is_touched(tmp_path, capsys, 
 def test_what_is_wrong_is_said_and_leaves_nothing(tmp_path, capsys, arguments, reason):
     assert main([*arguments, '-o', str(tmp_path / 'bag')]) == 1
     assert reason in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_tables_are_refused_a_folder_that_is_not_utf8(tmp_path, capsys):
+    assert main(['lesson', '--format', 'parquet', '-o', str(tmp_path / '\udcff')]) == 1
+    assert 'output: must be UTF-8' in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 

@@ -223,6 +223,12 @@ def test_a_folder_with_something_else_in_it_is_refused(tmp_path, capsys, write_s
     assert files_of(folder) == {'precious': b'data'}
 
 
+def test_a_folder_that_is_not_utf8_is_refused(tmp_path, capsys, write_sweep):
+    assert main([str(write_sweep()), '-o', str(tmp_path / '\udcff')]) == 1
+    assert 'output: must be UTF-8' in capsys.readouterr().err
+    assert not (tmp_path / '\udcff').exists()
+
+
 def test_a_folder_of_another_sweep_is_refused(tmp_path, capsys, write_sweep):
     folder = tmp_path / 'out'
     perform_here(write_sweep(), folder)
