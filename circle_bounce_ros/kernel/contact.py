@@ -2,8 +2,8 @@
 Have two circles touched, where, and along which normal (lesson eq. 1.1-1.5).
 
 Functions ending in `_xy` work on components, check nothing and are what the engine calls. The others are
-their public faces: they take points as (2,) or (n, 2), and raise ValueError for other shapes, numbers that are
-not finite and negative radii.
+their public faces: they take points as (2,) or (n, 2), and raise ValueError for other shapes, negative radii and
+numbers that are not real, or neither 0 nor between 1e-60 and 1e60 in size.
 """
 
 from __future__ import annotations
@@ -14,7 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from circle_bounce_ros.kernel.points import components, direction, plain, quantity, vectors
+from circle_bounce_ros.kernel.points import (
+    components,
+    direction,
+    in_range,
+    plain,
+    quantity,
+    vectors,
+)
 
 
 def gap_sq_xy(dx: Any, dy: Any, reach: Any) -> Any:
@@ -68,7 +75,9 @@ def in_contact(
     ax, ay = components(center_a, 'center_a')
     bx, by = components(center_b, 'center_b')
     reach = quantity(radius_a, 'radius_a') + quantity(radius_b, 'radius_b')
-    return plain(gap_sq_xy(bx - ax, by - ay, reach) <= 0.0)
+    dx, dy = bx - ax, by - ay
+    in_range(np.maximum(abs(dx), abs(dy)) / 2.0, 'center_b - center_a')
+    return plain(gap_sq_xy(dx, dy, reach) <= 0.0)
 
 
 def boxes_overlap(
@@ -150,6 +159,6 @@ def contact_point(
 
     """
     ax, ay = components(center_a, 'center_a')
-    nx, ny = components(contact_normal(center_a, center_b), 'normal')
+    nx, ny = components(contact_normal(center_a, center_b), 'normal', any_size=True)
     radius = quantity(radius_a, 'radius_a')
     return vectors(ax + radius * nx, ay + radius * ny)

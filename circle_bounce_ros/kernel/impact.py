@@ -2,8 +2,8 @@
 When bodies will touch: circle and circle, circle and wall. A wall's end is a circle of radius 0.
 
 Functions ending in `_xy` work on plain numbers, check nothing and are what the engine calls; the others are
-their public faces, and raise ValueError for wrong shapes, numbers that are not finite and negative lengths.
-Sizes from 1e-60 to 1e60, as a scene has them, keep clear of overflow and underflow.
+their public faces, and raise ValueError for wrong shapes, negative lengths and numbers that are not real, or
+neither 0 nor between 1e-60 and 1e60 in size: these keep clear of overflow and underflow.
 """
 
 from __future__ import annotations

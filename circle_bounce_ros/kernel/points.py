@@ -1,7 +1,13 @@
-"""Checks of what the public functions are given: points, vectors and lengths, one or many."""
+"""
+Checks of what the public functions are given: points, vectors and lengths, one or many.
+
+Numbers are real. Lengths and masses, and the larger component of a vector, are 0 or between 1e-60 and 1e60, as in
+a scene (ranges.py): squares of squares of these neither overflow nor vanish. A direction may have any length.
+"""
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -9,8 +15,53 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[Any]
 
+# Of lengths, speeds and masses. Squares of squares of these are still far from overflow and underflow.
+LARGEST = 1e60
+SMALLEST = 1e-60
 
-def components(value: ArrayLike, name: str) -> tuple[Array, Array]:
+# Characters of a value in an error.
+SHOWN = 500
+
+
+def shown(value: Any) -> str:
+    """Return a value as errors show it: Python refuses to write integers of thousands of digits."""
+    try:
+        text = repr(value).replace('\n', ' ')
+    except ValueError:
+        return f'{type(value).__name__} with too many digits'
+    return text if len(text) <= SHOWN else f'{text[:SHOWN]}...'
+
+
+def _reals(value: ArrayLike, name: str) -> Array:
+    """Return what is given as an array of finite floats; text, times, truths and complex numbers are none."""
+    try:
+        array = np.asarray(value)
+        real = array.dtype.kind in 'iuf' or (
+            array.dtype.kind == 'O'
+            and all(isinstance(n, Real) and not isinstance(n, bool) for n in array.flat)
+        )
+        if not real or np.ma.is_masked(value):
+            raise TypeError
+        with np.errstate(over='ignore'):
+            array = array.astype(np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f'{name}: must be real numbers, got {shown(value)}') from None
+    if not np.isfinite(array).all():
+        raise ValueError(f'{name}: must be finite, got {shown(array.tolist())}')
+    return array
+
+
+def in_range(array: Array, name: str) -> Array:
+    """Return the array if its numbers are 0 or of the sizes that a scene may have."""
+    size = np.abs(array)
+    wrong = (size > LARGEST) | ((size < SMALLEST) & (size > 0.0))
+    if wrong.any():
+        rule = f'must be 0 or between {SMALLEST:g} and {LARGEST:g} in size'
+        raise ValueError(f'{name}: {rule}, got {array[wrong][0]:g}')
+    return array
+
+
+def components(value: ArrayLike, name: str, *, any_size: bool = False) -> tuple[Array, Array]:
     """
     Return the x and y components of one vector or of many.
 
@@ -19,6 +70,8 @@ def components(value: ArrayLike, name: str) -> tuple[Array, Array]:
     value : (2,) or (n, 2) float
     name : str
         What the caller calls it; errors begin with it.
+    any_size : bool
+        Of a direction: numbers may be out of range.
 
     Returns
     -------
@@ -27,14 +80,14 @@ def components(value: ArrayLike, name: str) -> tuple[Array, Array]:
     Raises
     ------
     ValueError
-        For another shape, or numbers that are not finite.
+        For another shape, or numbers that are not real, not finite or out of range.
 
     """
-    array = np.asarray(value, dtype=np.float64)
+    array = _reals(value, name)
     if array.ndim not in (1, 2) or array.shape[-1] != 2:
         raise ValueError(f'{name}: must have shape (2,) or (n, 2), got {array.shape}')
-    if not np.isfinite(array).all():
-        raise ValueError(f'{name}: must be finite, got {array.tolist()}')
+    if not any_size:
+        in_range(np.abs(array).max(axis=-1), name)
     return array[..., 0], array[..., 1]
 
 
@@ -53,19 +106,18 @@ def quantity(value: ArrayLike, name: str, *, positive: bool = False) -> Array:
     Raises
     ------
     ValueError
-        For numbers that are not finite, are negative, or are zero where `positive` is asked for.
+        For numbers that are not real, not finite or out of range, are negative, or are zero where
+        `positive` is asked for.
 
     """
-    array = np.asarray(value, dtype=np.float64)
+    array = _reals(value, name)
     if array.ndim > 1:
         raise ValueError(f'{name}: must be one number or have shape (n,), got {array.shape}')
-    if not np.isfinite(array).all():
-        raise ValueError(f'{name}: must be finite, got {array.tolist()}')
     if positive and not (array > 0.0).all():
-        raise ValueError(f'{name}: must be > 0, got {array.tolist()}')
+        raise ValueError(f'{name}: must be > 0, got {shown(array.tolist())}')
     if not (array >= 0.0).all():
-        raise ValueError(f'{name}: must be >= 0, got {array.tolist()}')
-    return array
+        raise ValueError(f'{name}: must be >= 0, got {shown(array.tolist())}')
+    return in_range(array, name)
 
 
 def direction(value: ArrayLike, name: str) -> tuple[Array, Array]:
@@ -75,7 +127,7 @@ def direction(value: ArrayLike, name: str) -> tuple[Array, Array]:
     Scaled by a power of two, which changes no digit of a quotient, so that squares of very long or
     very short vectors neither overflow nor vanish.
     """
-    x, y = components(value, name)
+    x, y = components(value, name, any_size=True)
     longer = np.maximum(abs(x), abs(y))
     if not longer.all():
         raise ValueError(f'{name}: must not be the zero vector')

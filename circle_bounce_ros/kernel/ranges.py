@@ -16,10 +16,6 @@ from circle_bounce_ros.kernel.overlap import Bodies
 if TYPE_CHECKING:
     from circle_bounce_ros.kernel.scene import Scene
 
-# Of lengths, speeds and masses. Squares of squares of these are still far from overflow and underflow.
-LARGEST = 1e60
-SMALLEST = 1e-60
-
 # The radius of a circle that moves, by the largest coordinate or radius. Places are known to 1e-16 of that: at
 # 1e-15 circles still stay in a closed box, at 1e-16 they leave it.
 SMALLEST_RADIUS = 1e-12

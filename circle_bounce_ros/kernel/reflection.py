@@ -2,9 +2,9 @@
 What happens at a contact: lesson eq. 2.1-2.4, the vector form, and two free circles.
 
 Functions ending in `_xy` work on components, check nothing and are what the engine calls; the others are
-their public faces, and raise ValueError for wrong shapes, numbers that are not finite, a normal of length zero
-and masses that are not positive. All are pure: they always reflect. Whether bodies approach is the engine's
-question.
+their public faces, and raise ValueError for wrong shapes, a normal of length zero, masses that are not positive
+and numbers that are not real, or neither 0 nor between 1e-60 and 1e60 in size; a normal may have any length.
+All are pure: they always reflect. Whether bodies approach is the engine's question.
 """
 
 from __future__ import annotations

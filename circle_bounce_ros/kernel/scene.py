@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from circle_bounce_ros.kernel.overlap import Bodies, Overlap, deepest
-from circle_bounce_ros.kernel.ranges import LARGEST, SMALLEST, first_fault
+from circle_bounce_ros.kernel.points import LARGEST, SMALLEST, shown
+from circle_bounce_ros.kernel.ranges import first_fault
 
 # A circle's name becomes part of a ROS topic. Checked here without `re`, so that the rule reads as one line.
 NAME_RULE = 'must be a letter followed by letters, digits or single underscores'
@@ -92,7 +93,7 @@ class Circle:
         if 0.0 < speed < SMALLEST:
             raise SceneError('velocity', f'must be 0 or at least {SMALLEST:g} m/s, got {speed:g}')
         if self.name is not None and not is_legal_name(self.name):
-            raise SceneError('name', f'{NAME_RULE}, got {self.name!r}')
+            raise SceneError('name', f'{NAME_RULE}, got {shown(self.name)}')
 
 
 @dataclass(frozen=True)
@@ -203,17 +204,19 @@ def is_legal_name(name: Any) -> bool:
 
 def _truth(value: Any, place: str) -> bool:
     if not isinstance(value, (bool, np.bool_)):
-        raise SceneError(place, f'must be true or false, got {value!r}')
+        raise SceneError(place, f'must be true or false, got {shown(value)}')
     return bool(value)
 
 
 def _number(value: Any, place: str) -> float:
-    if isinstance(value, (bool, np.bool_, str, bytes)):
-        raise SceneError(place, f'must be a number, got {value!r}')
+    # NumPy makes floats of these, and Python of a bytearray.
+    no_number = (bool, np.bool_, str, bytes, bytearray, np.timedelta64, np.datetime64)
+    if isinstance(value, no_number) or np.ma.is_masked(value):
+        raise SceneError(place, f'must be a number, got {shown(value)}')
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
-        raise SceneError(place, f'must be a number, got {value!r}') from None
+        raise SceneError(place, f'must be a number, got {shown(value)}') from None
 
 
 def _finite(value: Any, place: str, unit: str) -> float:
@@ -238,7 +241,7 @@ def _point(value: Any, place: str, unit: str) -> tuple[float, float]:
     try:
         x, y = value
     except (TypeError, ValueError):
-        raise SceneError(place, f'must be two numbers, got {value!r}') from None
+        raise SceneError(place, f'must be two numbers, got {shown(value)}') from None
     return _finite(x, f'{place}[0]', unit), _finite(y, f'{place}[1]', unit)
 
 

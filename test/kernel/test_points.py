@@ -1,12 +1,13 @@
 """What the public functions accept as points, vectors and lengths, and how they refuse the rest."""
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from lesson_oracles import exactly, refusal
 
-from circle_bounce_ros.kernel import points
+from circle_bounce_ros.kernel import exchange, in_contact, points, time_to_touch
 
 
 def test_one_vector_gives_two_numbers():
@@ -90,7 +91,53 @@ def test_what_must_be_positive_is_not_zero(value, got):
 def test_a_length_may_be_zero_and_come_in_numbers():
     assert float(points.quantity(0, 'reach')) == 0.0
     assert points.quantity([1, 2], 'reach').tolist() == [1.0, 2.0]
-    assert float(points.quantity(5e-324, 'mass', positive=True)) == 5e-324
+    assert float(points.quantity(1e-60, 'mass', positive=True)) == 1e-60
+
+
+@pytest.mark.parametrize(
+    ('value', 'problem'),
+    [
+        (1j, 'must be real numbers'),
+        ('1', 'must be real numbers'),
+        (True, 'must be real numbers'),
+        (None, 'must be real numbers'),
+        ([1, '2'], 'must be real numbers'),
+        ([1.0, [2.0]], 'must be real numbers'),
+        (np.timedelta64(1, 's'), 'must be real numbers'),
+        (np.datetime64('2026-01-01'), 'must be real numbers'),
+        (np.ma.masked_array([1.0, 2.0], [False, True]), 'must be real numbers'),
+        (10**400, 'must be real numbers'),
+        pytest.param(10**5000, 'must be real numbers', id='digits'),
+        pytest.param([10**5000, 1], 'must be real numbers', id='digits in a list'),
+        (1.01e60, 'must be 0 or between 1e-60 and 1e+60 in size'),
+        (0.99e-60, 'must be 0 or between 1e-60 and 1e+60 in size'),
+        (5e-324, 'must be 0 or between 1e-60 and 1e+60 in size'),
+    ],
+)
+def test_what_is_no_real_number_in_range_is_refused_by_name(value, problem):
+    with pytest.raises(ValueError, match=refusal(f'reach: {problem}')):
+        points.quantity(value, 'reach')
+    if not isinstance(value, (list, np.ndarray)):
+        with pytest.raises(ValueError, match=refusal(f'center: {problem}')):
+            points.components([value, value], 'center')
+
+
+def test_fractions_and_whole_numbers_are_real():
+    assert points.quantity([Fraction(1, 2), 10**30], 'reach').tolist() == [0.5, 1e30]
+    assert points.quantity(np.array([3], dtype=np.uint8), 'reach').tolist() == [3.0]
+
+
+def test_the_largest_and_smallest_sizes_give_finite_times_and_right_contacts():
+    assert time_to_touch((1e60, 0), (-1e-60, 0), 1e-60) == pytest.approx(1e120)
+    assert time_to_touch((1e60, 0), (-1e60, 0), 5e59) == 0.5
+    assert time_to_touch((3e-60, 0), (-1e-60, 0), 1e-60) == pytest.approx(2.0)
+    assert in_contact((3e-60, 0), 1e-60, (0, 0), 1e-60) is False
+    assert in_contact((1e60, 0), 1e60, (-1e60, 0), 1e60) is True
+    before = ((1.0, 0.0), (-1.0, 0.0), 1e-60, 1e-60, (1e-200, 0.0))
+    assert np.array(exchange(*before)).tolist() == [[-1.0, 0.0], [1.0, 0.0]]
+    # The second component is in no range, but the vector is; what lies between the two centres is not.
+    with pytest.raises(ValueError, match=r'^center_b - center_a: must be 0 or'):
+        in_contact((1.0, 1e-200), 0.0, (1.0, 3e-200), 0.0)
 
 
 @pytest.mark.parametrize('value', [(0.0, 0.0), (0.0, -0.0), ((1.0, 0.0), (0.0, 0.0))])

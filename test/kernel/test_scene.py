@@ -336,3 +336,31 @@ def test_an_error_comes_whole_out_of_another_process():
 def test_a_scene_comes_whole_out_of_another_process():
     scene = Scene([MOVING, locked(5, 0, name='red')], [Wall((0, 5), (1, 5))], name='s', seed=1)
     assert pickle.loads(pickle.dumps(scene)) == scene
+
+
+@pytest.mark.parametrize(
+    'value',
+    [
+        pytest.param(10**5000, id='digits'),
+        bytearray(b'1'),
+        np.timedelta64(1, 's'),
+        np.ma.masked,
+        1j,
+    ],
+)
+def test_what_is_no_number_is_a_scene_error(value):
+    with pytest.raises(SceneError, match='must be a number') as refused:
+        Circle((0.0, 0.0), radius=value)
+    assert refused.value.place == 'radius'
+    with pytest.raises(SceneError, match='must be a number') as refused:
+        Circle((0.0, value), radius=1.0)
+    assert refused.value.place == 'position[1]'
+
+
+def test_numbers_of_thousands_of_digits_are_told_in_an_error():
+    with pytest.raises(SceneError, match='must be two numbers'):
+        Wall((10**5000, 0, 0), (1, 1))
+    with pytest.raises(SceneError, match='must be true or false'):
+        Circle((0, 0), radius=1.0, locked=10**5000)
+    with pytest.raises(SceneError, match='must be a letter'):
+        Circle((0, 0), radius=1.0, name=10**5000)
