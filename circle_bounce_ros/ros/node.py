@@ -106,13 +106,24 @@ class BounceNode(BaseNode):
         with self._lock:
             began = time.monotonic_ns()
             reading = self._read_clock()
-            while (tick := self._schedule.begin(reading)) is not None:
-                complete = self._show(tick)
-                if not complete or time.monotonic_ns() - began > CATCHING_UP * SECOND:
-                    break
+            try:
+                self._show_due_ticks(reading, began)
+            except Exception as error:
+                # A signal may end the context in the middle of a tick.
+                if not self.context.ok():
+                    raise
+                self.log_failure(error)
+                if not self._held:
+                    self._hold(self._runner.fail(f'a fault of this program: {one_line(error)}'))
             progress = self._schedule.take_progress()
             self._diagnostics.add_tick(began, self._schedule.timer_period_ns, progress)
             self._report_change()
+
+    def _show_due_ticks(self, reading: int, began: int) -> None:
+        while (tick := self._schedule.begin(reading)) is not None:
+            complete = self._show(tick)
+            if not complete or time.monotonic_ns() - began > CATCHING_UP * SECOND:
+                return
 
     def _read_clock(self) -> int:
         """Return what the clock that drives the scene reads, ns."""

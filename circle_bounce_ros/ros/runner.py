@@ -96,10 +96,14 @@ class Runner:
         try:
             return advance(self._simulation, scene_ns, lambda: time.monotonic() < deadline)
         except EndlessContactsError as error:
-            self._failure = str(error)
-            # The state stays that of the very instant, less than a nanosecond later.
-            self._failed_ns = min(last_ns_before(self._simulation.time), scene_ns)
-            return self._failed_ns
+            return self.fail(str(error))
+
+    def fail(self, reason: str) -> int:
+        """Go no further than the instant that was reached, until the scene starts again; return that instant, ns."""
+        self._failure = reason
+        # The state stays that of the very instant, less than a nanosecond later.
+        self._failed_ns = last_ns_before(self._simulation.time)
+        return self._failed_ns
 
     def restart(self) -> None:
         """Start the scene again."""

@@ -36,12 +36,9 @@ class Ticker:
     def __init__(self, node: Node, clock: Clock, call: Callable[[], None], period_ns: int) -> None:
         self._node = node
         self._call = call
-        self._failure: Exception | None = None
         self._thread: threading.Thread | None = None
         self._period_ns = period_ns
         self._timer = node.create_timer(period_ns / SECOND, call, clock=clock)
-        # Wakes the executor, which else would wait for ever while the thread has failed.
-        self._failed = node.create_guard_condition(self._raise_failure)
         self._divide_work()
 
     @property
@@ -85,14 +82,8 @@ class Ticker:
                 due -= wait
             try:
                 self._call()
-            except (
-                Exception
-            ) as error:  # for the thread that spins the node, which says why it ends
+            except Exception:
+                # A signal may end the context in the middle of a call.
                 if self._node.context.ok():
-                    self._failure = error
-                    self._failed.trigger()
+                    raise
                 return
-
-    def _raise_failure(self) -> None:
-        if self._failure is not None:
-            raise self._failure

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 import rclpy
@@ -30,6 +31,8 @@ HIT = {
     'walls': [{'start': [-5, -0.5], 'end': [5, -0.5]}, {'start': [-5, 0.5], 'end': [5, 0.5]}],
 }
 HIT_AT = (3.0 - math.sqrt(0.8**2 - 0.1**2)) / 2.0  # s
+FAULTY_NODE = (str(Path(__file__).with_name('faulty_node.py')),)
+
 AT_ONCE = {
     'circles': [{'name': 'stuck', 'position': [0, 0], 'velocity': [0, 1], 'radius': 1}],
     'walls': [{'start': [-5, -1], 'end': [5, -1]}, {'start': [-5, 1], 'end': [5, 1]}],
@@ -97,6 +100,35 @@ def test_a_failure_on_the_way_stands_at_its_instant_and_after_a_reset_comes_agai
         observer.spin_until(
             lambda before=before: 0 in instants(times[before:]), 'the first instant'
         )
+
+
+@pytest.mark.parametrize(('rate', 'publish_clock'), [(60.0, False), (1000.0, False), (60.0, True)])
+def test_a_fault_in_a_tick_pauses_the_node_which_goes_on_after_a_reset(
+    start, observer, reports, lesson, tmp_path, monkeypatch, rate, publish_clock
+):
+    """Ticks at 1,000 Hz come from a thread of their own."""
+    fault = tmp_path / 'fault'
+    monkeypatch.setenv('FAULT', str(fault))
+    times = observer.listen(TimeReference, 'time')
+    node = start(program=FAULTY_NODE, scene=lesson, rate=rate, publish_clock=publish_clock)
+    observer.collect(times, 3)
+    fault.touch()
+    assert 'a planted fault' in wait_for_error(observer, reports).message
+    # Ticks go on, at the instant that was reached.
+    observer.collect(times, 3)
+    assert len(set(instants(observer.collect(times, 3)))) == 1
+    for answer in (observer.step(), observer.pause(False)):
+        assert not answer.success
+        assert 'a planted fault' in answer.message
+    fault.unlink()
+    assert observer.reset().success
+    before = len(times)
+    observer.spin_until(
+        lambda: max(instants(times[before:]), default=0) > 0 and instants(times)[-1] > 0,
+        'the scene going on',
+    )
+    assert node.log.count('Traceback') == 1
+    assert node.end() == 0
 
 
 def block_signals():

@@ -59,19 +59,3 @@ def test_a_thousand_ticks_a_second_are_exact_through_services_and_changes_of_rat
     stamps = [nanoseconds(pose.header.stamp) for pose in poses]
     assert stamps == sorted(set(stamps))
     assert check(poses, times, load_scene(ball)) > 300
-
-
-def test_what_goes_wrong_in_the_thread_ends_the_node(launch, write_scene):
-    """A slot that fits exactly: contacts without end, at a rate that the thread serves."""
-    circle = {'position': [0.0, 0.5], 'velocity': [0.0, 1.0], 'radius': 0.5}
-    walls = [{'start': [-1, 0], 'end': [1, 0]}, {'start': [-1, 1], 'end': [1, 1]}]
-    node = launch(
-        *(
-            '-p',
-            f'scene:={write_scene("slot", circles=[circle], walls=walls)}',
-            '-p',
-            'rate:=500.0',
-        )
-    )
-    assert node.process.wait(60.0) == 1
-    assert 'contacts without end' in node.log
