@@ -111,7 +111,7 @@ def main():
     while True:
         try:
             scenes += check(seed)
-        except Exception:
+        except Exception:  # whatever it is, it is what is looked for
             failed += 1
             keep(seed, traceback.format_exc())
         seed += 1

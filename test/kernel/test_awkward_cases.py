@@ -197,7 +197,7 @@ def test_a_circle_comes_back_from_far_outside(levels, radius, monkeypatch):
     A light circle bounces off a locked one, catches up with a heavy one far out, and comes back.
 
     On the way back it is in no cell of the grid: the locked circle must find it all the same. A large circle at rest
-    makes it a guest of a second level of cells, which it leaves and enters as well.
+    makes it a proxy on a second level of cells, which it leaves and enters as well.
     """
     speed = 2.01
     light = Circle((20.0, 0.0), (-speed, 0.0), radius=radius)
@@ -284,7 +284,7 @@ def test_bodies_that_do_not_approach_are_let_go(kind):
     assert len(simulation.drain_contacts()) == 0
 
 
-def test_the_tournament_knows_the_earliest_time_and_whose_it_is():
+def test_the_event_queue_knows_the_earliest_time_and_whose_it_is():
     rng = random.Random(4)
     _, world = plain(Scene([Circle((3.0 * k, 0.0), radius=1.0) for k in range(37)]))
     times = [0.0] * 37
